@@ -5,24 +5,80 @@ MAKEFLAGS += --no-print-directory
 BUILD  := build
 NEED   ?= doc/loom/need.sh
 JOBS   ?= $(shell nproc)
+GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 
-# What Debian 12 calls the things we stand on. PROGRAM: to build and test; BOOK: to weave the book.
+# What Debian 12 calls the things we stand on.
 PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev
 BOOK    := latexml fonts-lmodern
 
-.PHONY: all test book bench format dist clean help install sanitize clang coverage fresh-machine need-program need-book
+.PHONY: all test book reproduce bench format dist sanitize clang coverage fresh-machine clean help
+.PHONY: need-program need-book
 .DEFAULT_GOAL := all
+.NOTPARALLEL:
 
-all: need-book $(BUILD)/build.ninja  ## build, reproduce the thesis, weave the book, print the verdict
+all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the book, print the verdict
 	@cmake --build $(BUILD) -j $(JOBS) --target everything
+	@cat $(BUILD)/report/summary.txt
+	@echo "The report: $(BUILD)/report/report.html"
+	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-program $(BUILD)/build.ninja  ## build and run all tests
+test: need-program $(BUILD)/CMakeCache.txt ## build and run all tests
 	@cmake --build $(BUILD) -j $(JOBS)
-	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
-$(BUILD)/build.ninja:
-	@cmake --preset release -G Ninja >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
+book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
+	@cmake --build $(BUILD) -j $(JOBS) --target book
+	@echo "The book: $(BUILD)/book/index.html"
+
+reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
+	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
+	@cat $(BUILD)/report/summary.txt
+
+bench: need-program $(BUILD)/CMakeCache.txt ## measure the inner loops beside bare loops, print the ratios
+	@cmake --build $(BUILD) -j $(JOBS) --target malus_bench
+	@$(BUILD)/malus_bench
+
+format: ## let clang-format format the chapters' code and the tests
+	@$(NEED) clang-format noweb python3
+	@doc/loom/format.py $(shell git ls-files '*.nw')
+	@clang-format -i $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
+
+dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
+	@cmake --build $(BUILD) -j $(JOBS) --target dist
+
+sanitize: need-program ## all tests under the address and undefined-behaviour sanitizers
+	@cmake --preset sanitize $(GENERATOR) >/dev/null
+	@cmake --build build-sanitize -j $(JOBS)
+	@ctest --test-dir build-sanitize -j $(JOBS) --output-on-failure --progress
+
+clang: need-program ## all tests as compiled by clang++
+	@$(NEED) clang
+	@cmake --preset clang $(GENERATOR) >/dev/null
+	@cmake --build build-clang -j $(JOBS)
+	@ctest --test-dir build-clang -j $(JOBS) --output-on-failure --progress
+
+coverage: need-program ## which lines of nw/ the tests reach
+	@cmake --preset coverage $(GENERATOR) >/dev/null
+	@cmake --build build-coverage -j $(JOBS)
+	@find build-coverage -name '*.gcda' -delete
+	@ctest --test-dir build-coverage -j $(JOBS) --output-on-failure --progress
+	@doc/loom/coverage.py build-coverage
+
+fresh-machine: ## prove the package list in a minimal Debian root (as root)
+	@tests/fresh-machine.sh
+
+clean: ## remove everything that was made
+	rm -rf $(BUILD) $(BUILD)-* dist
+	find generated -mindepth 1 ! -name README.md -delete
+
+help: ## this list
+	@echo 'malus: polarimetric image simulation as an executable book'
+	@echo
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+$(BUILD)/CMakeCache.txt:
+	@cmake --preset release $(GENERATOR) >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
 	@rm -f $(BUILD).configure.log
 
 need-program:
@@ -30,11 +86,3 @@ need-program:
 
 need-book:
 	@$(NEED) $(PROGRAM) $(BOOK)
-
-clean:  ## remove everything that was made
-	rm -rf $(BUILD) $(BUILD)-* dist
-	find generated -mindepth 1 ! -name README.md -delete
-
-help:  ## this list
-	@echo 'malus: polarimetric image simulation as an executable book'; echo
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

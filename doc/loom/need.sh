@@ -1,10 +1,11 @@
 #!/bin/sh
 # need.sh PACKAGE...: see that these Debian packages are installed; install the missing ones.
 # As root with apt-get; otherwise with sudo when it works; otherwise name the line to type and stop.
+installed=" $(dpkg-query -W -f='${Package}=${db:Status-Status} ' "$@" 2>/dev/null)"
 missing=
 for package in "$@"; do
-  case "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" in
-    "install ok installed") ;;
+  case "$installed" in
+    *" $package=installed "*) ;;
     *) missing="$missing $package" ;;
   esac
 done
@@ -12,7 +13,7 @@ done
 
 if ! command -v apt-get >/dev/null; then
   echo "malus needs what Debian 12 calls:$missing" >&2
-  echo "There is no apt-get here; install them by your system's own means, then run make NEED=: $MAKECMDGOALS" >&2
+  echo "There is no apt-get here. Install them by your system's own means and run make NEED=true" >&2
   exit 1
 fi
 line="apt-get install --no-install-recommends$missing"
@@ -27,11 +28,14 @@ else
   echo "and run make again." >&2
   exit 1
 fi
+echo "Installing them now (a few minutes the first time) ..."
+log=$(mktemp)
 export DEBIAN_FRONTEND=noninteractive
-$as_root apt-get update -qq && $as_root $line -y -qq >/tmp/malus-install.$$ 2>&1 || {
-  tail -n 5 /tmp/malus-install.$$ >&2
-  echo "The installation failed; the whole log is /tmp/malus-install.$$" >&2
+if $as_root apt-get update -qq >"$log" 2>&1 && $as_root $line -y -qq >>"$log" 2>&1; then
+  echo "Installed."
+  rm -f "$log"
+else
+  tail -n 5 "$log" >&2
+  echo "The installation failed; its whole log is $log" >&2
   exit 1
-}
-rm -f /tmp/malus-install.$$
-echo "Installed."
+fi

@@ -1,0 +1,38 @@
+#!/bin/sh
+# fresh-machine.sh [DIRECTORY]: prove that malus needs git, make and nothing else.
+#
+# Makes a minimal Debian 12 root in DIRECTORY (default: a new one below /var/tmp) that holds git and make, clones
+# the committed HEAD into it, and types there what the README tells a new user to type. Package sources
+# are those of this machine. Wants root (debootstrap and chroot do) and Debian's package debootstrap.
+set -eu
+project=$(cd "$(dirname "$0")/.." && git rev-parse --show-toplevel)
+root=${1:-$(mktemp -d /var/tmp/malus-fresh-XXXXXX)}
+mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)
+
+[ "$(id -u)" = 0 ] || { echo "fresh-machine.sh must run as root: chroot needs it" >&2; exit 2; }
+command -v debootstrap >/dev/null || { echo "debootstrap is missing: apt-get install debootstrap" >&2; exit 2; }
+
+say() { printf '\n== %s\n' "$*"; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TERM="${TERM:-dumb}" LANG=C.UTF-8 sh -ec "$1"; }
+
+if [ ! -e "$root/bin/sh" ]; then
+  say "a minimal Debian 12 in $root"
+  debootstrap --variant=minbase --include=git,make,ca-certificates bookworm "$root" "$mirror" >"$root.log" 2>&1 ||
+    { tail -n 5 "$root.log" >&2; exit 1; }
+fi
+rm -f "$root/etc/apt/sources.list"
+cp -r /etc/apt/sources.list.d /etc/apt/apt.conf.d "$root/etc/apt/"
+cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
+mkdir -p "$root/proc" "$root/dev"
+mount -t proc proc "$root/proc" 2>/dev/null && trap 'umount "$root/proc"' EXIT
+
+say "clone"
+rm -rf "$root/root/malus"
+git clone -q "file://$project" "$root/root/malus"
+for command in "make test" "make" "make"; do
+  say "$command"
+  inside "cd /root/malus && begin=\$(date +%s) && $command && echo \"($command took \$((\$(date +%s) - begin)) s)\""
+done
+say "the verdict table once more"
+inside "cd /root/malus && ./build/malus reproduce | tail -n 20"
+say "$root holds the machine; remove it when you like"
