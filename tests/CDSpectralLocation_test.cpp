@@ -1,0 +1,286 @@
+// Band responses, grids, and the weights of interpolation and averaging (nw/light/CDSpectralLocation.nw).
+#include "light/CDSpectralLocation.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+
+using namespace malus;
+
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+const std::vector<CDExtrapolation> beyonds{CDExtrapolation::forbid, CDExtrapolation::hold,
+                                           CDExtrapolation::zero, CDExtrapolation::linear};
+
+double weighted(const std::vector<CDSpectralWeight>& weights, const std::vector<double>& values) {
+  double sum = 0;
+  for (const auto& [index, weight] : weights) sum += weight * values.at(index);
+  return sum;
+}
+
+// The spectrum as the chapter defines it, evaluated directly.
+double spectrum(const CDSpectralGrid& grid, const std::vector<double>& v, double nm,
+                CDExtrapolation beyond) {
+  const std::size_t n = grid.size();
+  if (nm < grid.nm(0) || nm > grid.nm(n - 1)) {
+    if (beyond == CDExtrapolation::zero) return 0;
+    if (beyond == CDExtrapolation::hold) return nm < grid.nm(0) ? v.front() : v.back();
+  }
+  std::size_t j = 0;
+  while (j + 2 < n && nm > grid.nm(j + 1)) ++j;
+  return v[j] + (v[j + 1] - v[j]) / (grid.nm(j + 1) - grid.nm(j)) * (nm - grid.nm(j));
+}
+
+// Midpoint sums between all corners of the integrand.
+double averageByQuadrature(const CDSpectralGrid& grid, const std::vector<double>& v,
+                           const CDSpectralLocation& band, std::vector<double> corners,
+                           CDExtrapolation beyond) {
+  for (const double nm : grid.nm()) corners.push_back(nm);
+  corners.push_back(band.lower_nm());
+  corners.push_back(band.upper_nm());
+  std::sort(corners.begin(), corners.end());
+  double sum = 0, area = 0;
+  for (std::size_t c = 0; c + 1 < corners.size(); ++c) {
+    const double p = std::max(corners[c], band.lower_nm()), q = std::min(corners[c + 1], band.upper_nm());
+    if (!(p < q)) continue;
+    constexpr int steps = 400;
+    for (int i = 0; i < steps; ++i) {
+      const double nm = p + (q - p) * (i + 0.5) / steps;
+      const double r = band.getResponse().at(band.nm(), nm) * (q - p) / steps;
+      sum += r * spectrum(grid, v, nm, beyond);
+      area += r;
+    }
+  }
+  return sum / area;
+}
+
+std::string message(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const CDGridError& error) {
+    return error.what();
+  }
+  return "no CDGridError";
+}
+}  // namespace
+
+TEST(CDSpectralLocationIdentity, InterpolationWorkedExamples) {
+  const auto grid = CDSpectralGrid::make({450, 550, 650});
+  const std::vector<double> v{1, 5, -3};
+  const auto at = [&](double nm, CDExtrapolation beyond = CDExtrapolation::forbid) {
+    return weighted(grid->weights(CDSpectralLocation(nm), beyond), v);
+  };
+  EXPECT_EQ(at(450), 1);
+  EXPECT_EQ(at(550), 5);
+  EXPECT_EQ(at(650), -3);
+  EXPECT_EQ(at(475), 2);  // 0.75 of the first and 0.25 of the second
+  EXPECT_EQ(at(600), 1);
+  EXPECT_EQ(at(400, CDExtrapolation::hold), 1);
+  EXPECT_EQ(at(700, CDExtrapolation::hold), -3);
+  EXPECT_EQ(at(400, CDExtrapolation::zero), 0);
+  EXPECT_EQ(at(700, CDExtrapolation::zero), 0);
+  EXPECT_EQ(at(400, CDExtrapolation::linear), -1);
+  EXPECT_EQ(at(700, CDExtrapolation::linear), -7);
+  EXPECT_THROW(at(449.9), CDGridError);
+  EXPECT_THROW(at(650.1), CDGridError);
+}
+
+TEST(CDSpectralLocationIdentity, AnEntryOfTheGridIsTakenAlone) {
+  // a NaN at a neighbour must not spoil it: the neighbour is not in the sum
+  const auto grid = CDSpectralGrid::make({450, 550, 650});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto weights = grid->weights((*grid)[i]);
+    ASSERT_EQ(weights.size(), 1U);
+    EXPECT_EQ(weights[0].index, i);
+    EXPECT_EQ(weights[0].weight, 1);
+  }
+}
+
+TEST(CDSpectralLocationIdentity, RectangleWorkedExample) {
+  const auto grid = CDSpectralGrid::make({450, 550, 650});
+  const auto weights = grid->weights(CDSpectralLocation(550, CDBandResponse::rectangular(100)));
+  ASSERT_EQ(weights.size(), 3U);
+  EXPECT_DOUBLE_EQ(weights[0].weight, 0.125);
+  EXPECT_DOUBLE_EQ(weights[1].weight, 0.75);
+  EXPECT_DOUBLE_EQ(weights[2].weight, 0.125);
+}
+
+TEST(CDSpectralLocationIdentity, GridOfOneEntry) {
+  const auto grid = CDSpectralGrid::make({550});
+  EXPECT_EQ(weighted(grid->weights(CDSpectralLocation(550)), {7}), 7);
+  EXPECT_EQ(weighted(grid->weights(CDSpectralLocation(400), CDExtrapolation::hold), {7}), 7);
+  EXPECT_EQ(weighted(grid->weights(CDSpectralLocation(400), CDExtrapolation::zero), {7}), 0);
+  EXPECT_THROW(grid->weights(CDSpectralLocation(400)), CDGridError);
+  EXPECT_THROW(grid->weights(CDSpectralLocation(400), CDExtrapolation::linear), CDGridError);
+  const CDSpectralLocation wide(550, CDBandResponse::gaussian(20));
+  EXPECT_DOUBLE_EQ(weighted(grid->weights(wide, CDExtrapolation::hold), {7}), 7);
+  EXPECT_THROW(grid->weights(wide), CDGridError);
+}
+
+RC_GTEST_PROP(CDSpectralLocationIdentity, AveragesAgreeWithQuadrature, (unsigned seed)) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<double> nm{400 + 50 * unit(engine)}, v{unit(engine)};
+  for (int i = 0; i < 6; ++i) {
+    nm.push_back(nm.back() + 1 + 60 * unit(engine));
+    v.push_back(unit(engine) - 0.3);
+  }
+  const auto grid = CDSpectralGrid::make(nm);
+  std::vector<double> table_nm{380 + 100 * unit(engine)}, table{unit(engine)};
+  for (int i = 0; i < 4; ++i) {
+    table_nm.push_back(table_nm.back() + 1 + 50 * unit(engine));
+    table.push_back(unit(engine));
+  }
+  const double centre = nm.front() + (nm.back() - nm.front()) * (1.2 * unit(engine) - 0.1);
+  const double width = 1 + 80 * unit(engine);
+  const std::vector<CDSpectralLocation> bands{
+      CDSpectralLocation(centre, CDBandResponse::rectangular(width)),
+      CDSpectralLocation(centre, CDBandResponse::gaussian(width)),
+      CDSpectralLocation(table_nm[2], CDBandResponse::tabulated(table_nm, table))};
+  for (const auto& band : bands)
+    for (const auto beyond : beyonds) {
+      const bool inside = band.lower_nm() >= nm.front() && band.upper_nm() <= nm.back();
+      if (beyond == CDExtrapolation::forbid && !inside) {
+        RC_ASSERT_THROWS_AS(grid->weights(band, beyond), CDGridError);
+        continue;
+      }
+      const double ours = weighted(grid->weights(band, beyond), v);
+      const double theirs = averageByQuadrature(*grid, v, band, table_nm, beyond);
+      // 400 midpoints a piece: second derivative times (piece/400)^2 / 24; the steepest is the
+      // Gaussian, 5.5/width^2 over pieces of at most 3 widths: 5.5 * 9 / 400^2 / 24 = 1.3e-5, of
+      // values of order one; a linear extrapolation may reach a few tens
+      RC_ASSERT(std::abs(ours - theirs) < 2e-5 * (1 + std::abs(theirs)));
+      auto perturbed = v;  // negative control: the entry with most weight changes by a thousandth
+      const auto weights = grid->weights(band, beyond);
+      if (weights.empty()) continue;
+      const auto most = std::max_element(weights.begin(), weights.end(), [](auto a, auto b) {
+        return std::abs(a.weight) < std::abs(b.weight);
+      });
+      perturbed[most->index] += 1e-2 * (1 + std::abs(theirs)) / std::abs(most->weight);
+      RC_ASSERT(std::abs(weighted(weights, perturbed) - theirs) > 2e-5 * (1 + std::abs(theirs)));
+    }
+}
+
+TEST(CDSpectralLocationInvariant, AStraightLineIsSeenAtTheCentroid) {
+  const auto grid = CDSpectralGrid::make({300, 410, 415, 560, 700, 900});
+  std::vector<double> line;
+  for (const double nm : grid->nm()) line.push_back(3 - 0.01 * nm);
+  const auto read = [&](const CDSpectralLocation& band) { return weighted(grid->weights(band), line); };
+  // rounding of a dozen terms of size up to 10
+  const double tolerance = 2e-14;
+  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::rectangular(44))), 3 - 5.573, tolerance);
+  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::gaussian(44))), 3 - 5.573, tolerance);
+  // a triangle that rises from 400 to 550 and falls at once: its centroid stands at 500
+  EXPECT_NEAR(read(CDSpectralLocation(
+                  520, CDBandResponse::tabulated({400, 550, 550.0000000001}, {0, 1, 0}))),
+              3 - 5, 1e-11);  // the fall is 1e-10 nm wide
+  EXPECT_GT(std::abs(read(CDSpectralLocation(557.4, CDBandResponse::gaussian(44))) - (3 - 5.573)),
+            tolerance);  // negative control
+}
+
+TEST(CDSpectralLocationInvariant, ANarrowingBandTendsToInterpolation) {
+  const auto grid = CDSpectralGrid::make({450, 550, 650});
+  const std::vector<double> v{1, 5, -3};
+  for (const double centre : {470.0, 550.0, 640.0}) {
+    const double there = weighted(grid->weights(CDSpectralLocation(centre)), v);
+    for (const double fwhm : {1.0, 1e-3, 1e-6})
+      for (const auto& response : {CDBandResponse::rectangular(fwhm), CDBandResponse::gaussian(fwhm)})
+        // at a corner the average differs by about the slope change times the width: 0.12 per nm
+        EXPECT_NEAR(weighted(grid->weights(CDSpectralLocation(centre, response)), v), there,
+                    0.12 * fwhm + 1e-9)  // 1e-9: end points near 550 rounded to 1e-13, over 1e-6 nm
+            << centre << " " << fwhm;
+  }
+}
+
+TEST(CDSpectralLocationPublished, GaussianHalfMaximum) {
+  // the definition of the full width at half maximum; area of a Gaussian: fwhm sqrt(pi / ln 2) / 2
+  // (Abramowitz and Stegun 7.4.4), less the two tails beyond three widths (1.6e-12 of it)
+  const auto response = CDBandResponse::gaussian(10);
+  EXPECT_DOUBLE_EQ(response.at(500, 505), 0.5);
+  EXPECT_DOUBLE_EQ(response.at(500, 495), 0.5);
+  EXPECT_EQ(response.at(500, 530.1), 0);
+  const double area = response.moments(500, 470, 530, 500).zeroth;
+  EXPECT_NEAR(area, 5 * std::sqrt(std::acos(-1.0) / std::log(2.0)), 1e-10);
+  EXPECT_NEAR(response.moments(500, 470, 530, 500).first, 0, 1e-10);
+  EXPECT_GT(std::abs(area - 5 * std::sqrt(std::acos(-1.0))), 1e-10);  // negative control
+}
+
+TEST(CDSpectralLocationIdentity, ShapesOfTheResponses) {
+  EXPECT_EQ(CDBandResponse::narrow().at(500, 500), 1);
+  EXPECT_EQ(CDBandResponse::narrow().at(500, 500.1), 0);
+  const auto box = CDBandResponse::rectangular(10);
+  EXPECT_EQ(box.at(500, 495), 1);
+  EXPECT_EQ(box.at(500, 494.9), 0);
+  EXPECT_EQ(box.getFWHM(), 10);
+  EXPECT_EQ(box.getShape(), CDBandResponse::Shape::rectangular);
+  const auto table = CDBandResponse::tabulated({400, 450, 460}, {0, 1, 0.5});
+  EXPECT_EQ(table.at(450, 400), 0);
+  EXPECT_EQ(table.at(450, 425), 0.5);
+  EXPECT_EQ(table.at(450, 450), 1);
+  EXPECT_EQ(table.at(450, 460), 0.5);
+  EXPECT_EQ(table.at(450, 461), 0);
+  EXPECT_EQ(table.at(450, not_a_number), 0);
+}
+
+TEST(CDSpectralLocationIdentity, ForbiddenBands) {
+  for (const double bad : {0.0, -10.0, infinite, not_a_number}) {
+    EXPECT_THROW(CDBandResponse::rectangular(bad), CDMathError) << bad;
+    EXPECT_THROW(CDBandResponse::gaussian(bad), CDMathError) << bad;
+    EXPECT_THROW(CDSpectralLocation{bad}, CDMathError) << bad;
+  }
+  using Table = std::vector<double>;
+  EXPECT_THROW(CDBandResponse::tabulated(Table{400}, Table{1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {1, 1, 1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, 400}, {1, 1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({-400, 400}, {1, 1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, infinite}, {1, 1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, not_a_number}, {1, 1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {1, -1}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {1, not_a_number}), CDMathError);
+  EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {0, 0}), CDMathError);
+  EXPECT_THROW(CDSpectralLocation(100, CDBandResponse::rectangular(200)), CDMathError);
+  EXPECT_THROW(CDSpectralLocation(600, CDBandResponse::tabulated({400, 500}, {1, 1})), CDMathError);
+}
+
+TEST(CDSpectralLocationIdentity, GridsAreOrderedAndNotEmpty) {
+  EXPECT_THROW(CDSpectralGrid::make(std::vector<double>{}), CDGridError);
+  EXPECT_THROW(CDSpectralGrid::make({450, 450}), CDGridError);
+  EXPECT_THROW(CDSpectralGrid::make({550, 450}), CDGridError);
+  EXPECT_THROW(CDSpectralGrid::make({450, not_a_number}), CDMathError);
+  EXPECT_EQ(message([] { CDSpectralGrid::make({450, 650, 550}); }),
+            "a spectral grid must increase in wavelength, but 550 nm follows 650 nm");
+  // energies that fall are wavelengths that rise
+  const auto grid = CDSpectralGrid::make(std::vector<CDSpectralLocation>{
+      CDSpectralLocation({3, CDSpectralUnits::electronVolt}),
+      CDSpectralLocation({2, CDSpectralUnits::electronVolt})});
+  EXPECT_EQ(grid->in(CDSpectralUnits::electronVolt), (std::vector<double>{3, 2}));
+  EXPECT_LT(grid->nm(0), grid->nm(1));
+  EXPECT_EQ(grid->nm().size(), 2U);
+}
+
+TEST(CDSpectralLocationIdentity, DifferentGridsAreNamed) {
+  const auto a = CDSpectralGrid::make({450, 550, 650}), same = CDSpectralGrid::make({450, 550, 650});
+  EXPECT_NO_THROW(demandSameGrid(*a, *a));
+  EXPECT_NO_THROW(demandSameGrid(*a, *same));
+  const auto said = [&](const CDSpectralGridPtr& b) { return message([&] { demandSameGrid(*a, *b); }); };
+  const std::string remedy = "; bring one of them over explicitly with resampled(grid)";
+  EXPECT_EQ(said(CDSpectralGrid::make({450, 551, 650})),
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 entries from "
+            "450 to 650 nm, differing first at entry 1, 550 against 551 nm)" + remedy);
+  EXPECT_EQ(said(CDSpectralGrid::make({450})),
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 1 entry at 450 "
+            "nm)" + remedy);
+  const auto filtered = CDSpectralGrid::make(std::vector<CDSpectralLocation>{
+      CDSpectralLocation(450), CDSpectralLocation(550, CDBandResponse::gaussian(10)),
+      CDSpectralLocation(650)});
+  EXPECT_EQ(said(filtered),
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 entries from "
+            "450 to 650 nm, with different band responses at 550 nm)" + remedy);
+}
