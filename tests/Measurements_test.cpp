@@ -1,0 +1,71 @@
+// Measures of curves against closed forms (nw/thesis/Measurements.nw).
+#include "thesis/Measurements.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "light/CDError.hpp"
+
+using namespace malus;
+
+namespace {
+// Golden section stops where values no longer differ: sqrt(epsilon) times the width of the peak.
+constexpr double peak_tolerance = 1e-6;
+constexpr double root_tolerance = 1e-9;  // halving; limited by the peak's height, which is relative 1e-16
+
+CDCurve gaussian(double centre, double sigma) {
+  return [=](double x) { return 3.0 * std::exp(-0.5 * std::pow((x - centre) / sigma, 2)); };
+}
+}  // namespace
+
+TEST(MeasurementsIdentity, GaussianHasItsPeakAndWidth) {
+  const CDLobe lobe = measureLobe(gaussian(12.34567, 5.0), -40, 60);
+  EXPECT_NEAR(lobe.peak.x, 12.34567, peak_tolerance);
+  EXPECT_NEAR(lobe.peak.y, 3.0, 1e-12);
+  EXPECT_NEAR(lobe.width(), 2 * std::sqrt(2 * std::numbers::ln2) * 5.0, root_tolerance);
+  EXPECT_FALSE(lobe.clipped_left || lobe.clipped_right);
+}
+
+TEST(MeasurementsIdentity, NegativeControlShiftedGaussianIsSeen) {
+  EXPECT_GT(std::abs(maximize(gaussian(12.3457, 5.0), -40, 60).x - 12.34567), peak_tolerance);
+}
+
+TEST(MeasurementsIdentity, AnIntervalClipsTheLobe) {
+  const CDLobe lobe = measureLobe(gaussian(58, 5.0), -40, 60);
+  EXPECT_TRUE(lobe.clipped_right);
+  EXPECT_FALSE(lobe.clipped_left);
+  EXPECT_EQ(lobe.right, 60);
+  EXPECT_NEAR(lobe.width(), 2 + std::sqrt(2 * std::numbers::ln2) * 5.0, root_tolerance);
+}
+
+TEST(MeasurementsIdentity, PeakMayBeAnEndOrAKink) {
+  EXPECT_EQ(maximize([](double x) { return x; }, 0, 2).x, 2);
+  EXPECT_EQ(maximize([](double x) { return -x; }, 0, 2).x, 0);
+  EXPECT_NEAR(maximize([](double x) { return -std::abs(x - 0.777); }, 0, 2).x, 0.777, 1e-9);
+}
+
+TEST(MeasurementsIdentity, LocalMaximaOfASine) {
+  const auto maxima = localMaxima([](double x) { return std::sin(x); }, 0, 20);
+  ASSERT_EQ(maxima.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(maxima[i].x, std::numbers::pi * (0.5 + 2.0 * static_cast<double>(i)), peak_tolerance);
+  EXPECT_TRUE(localMaxima([](double x) { return x * x; }, -1, 1).empty());
+}
+
+TEST(MeasurementsIdentity, RootOfACosineAndRefusal) {
+  EXPECT_NEAR(findRoot([](double x) { return std::cos(x); }, 0, 3), std::numbers::pi / 2, 1e-15);
+  EXPECT_THROW(findRoot([](double) { return 1.0; }, 0, 1), CDMathError);
+}
+
+TEST(MeasurementsIdentity, LineAndItsResidual) {
+  const CDLine exact = fitLine({0, 1, 2, 3}, {1, 3, 5, 7});
+  EXPECT_NEAR(exact.slope, 2, 1e-15);
+  EXPECT_NEAR(exact.intercept, 1, 1e-15);
+  EXPECT_NEAR(exact.residual, 0, 1e-15);
+  // y = 0, 1, 0 at x = -1, 0, 1: slope 0 through the mean 1/3; farthest point 2/3 away
+  EXPECT_NEAR(fitLine({-1, 0, 1}, {0, 1, 0}).residual, 2.0 / 3, 1e-15);
+  EXPECT_THROW(fitLine({1, 1}, {0, 1}), CDMathError);
+  EXPECT_THROW(fitLine({1}, {0}), CDMathError);
+}
