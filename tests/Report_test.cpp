@@ -1,0 +1,108 @@
+// One run told in four ways (nw/program/Report.nw).
+#include "program/Report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "Scratch.hpp"
+
+using namespace malus;
+
+namespace {
+CDRun sampleRun() {
+  CDItemResult one{{"T1", "table", "One & only", "page 1"}, {}, {{"curve", "A <curve>", true}}, {"curve"}, {{"a", "1.5"}}, ""};
+  one.claims = {{"r", "a < b", "1.25", "1.2512", "half a unit", CDVerdict::reproduced, 0.0012},
+                {"e", "misprint", "104.07", "102.07", "digits", CDVerdict::erratum, -2.0},
+                {"d", "sentence", "", "seen \"so\"", "", CDVerdict::differs},
+                {"n", "lost", "", "", "the scan", CDVerdict::notTestable}};
+  CDItemResult two{{"T2", "table", "Two", ""}, {}, {}, {}, {}, "it broke"};
+  CDRun run;
+  run.items = {one, two};
+  run.changes = {{"T1", "r", "differs", "reproduced"}, {"T1", "x", "erratum", ""}};
+  return run;
+}
+
+const std::string page = "{{status}}|{{counts}}|{{changes}}|{{verdicts}}|{{items}}";
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+  std::size_t number = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++number;
+  return number;
+}
+}  // namespace
+
+TEST(ReportIdentity, TheSummaryTellsCountsFailuresAndChanges) {
+  EXPECT_EQ(summaryText(sampleRun(), "out"),
+            "r reproduced   e erratum   d differs   n not testable\n"
+            "T1      1 r   1 e   1 d   1 n T2     FAILED\n"
+            "2 items: 1 reproduced, 1 erratum, 1 differs, 1 not testable\n"
+            "FAILED T2: it broke\n"
+            "CHANGED T1 r: committed differs, now reproduced\n"
+            "CHANGED T1 x: committed erratum, now gone\n"
+            "look at out/report.html\n");
+}
+
+TEST(ReportIdentity, OneScreenHoldsManyItemsAndManyChanges) {
+  CDRun run = sampleRun();
+  run.items.resize(60, run.items[0]);
+  run.changes.resize(100, run.changes[0]);
+  EXPECT_LE(occurrences(summaryText(run, "out"), "\n"), 40u);
+  EXPECT_NE(summaryText(run, "out").find("CHANGED 90 more\n"), std::string::npos);
+}
+
+TEST(ReportIdentity, TheJsonHoldsTheRun) {
+  const auto json = nlohmann::json::parse(reportJson(sampleRun()));
+  EXPECT_EQ(json["good"], false);
+  EXPECT_EQ(json["counts"]["erratum"], 1);
+  EXPECT_EQ(json["changes"][1]["now"], "");
+  const auto& claims = json["items"][0]["claims"];
+  ASSERT_EQ(claims.size(), 4u);
+  EXPECT_EQ(claims[0]["residual"], 0.0012);
+  EXPECT_TRUE(claims[2]["residual"].is_null());
+  EXPECT_EQ(claims[3]["verdict"], "not testable");
+  EXPECT_EQ(json["items"][0]["pictures"][0]["file"], "T1/curve.svg");
+  EXPECT_EQ(json["items"][0]["values"]["a"], "1.5");
+  EXPECT_EQ(json["items"][1]["failure"], "it broke");
+}
+
+TEST(ReportIdentity, ThePageHoldsEachClaimOnceAndEscapesIt) {
+  const std::string html = reportHtml(sampleRun(), page);
+  EXPECT_EQ(html.find("{{"), std::string::npos);
+  for (const char* name : {"r", "e", "d", "n"})
+    EXPECT_EQ(occurrences(html, "<code>" + std::string(name) + "</code>"), 1u) << name;
+  EXPECT_NE(html.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(html.find("One &amp; only"), std::string::npos);
+  EXPECT_NE(html.find("seen &quot;so&quot;"), std::string::npos);
+  EXPECT_EQ(html.find("a < b"), std::string::npos);
+  EXPECT_NE(html.find("<img src=\"T1/curve.svg\""), std::string::npos);
+  EXPECT_LT(html.find("#T1"), html.find("<section id=\"T1\">"));
+}
+
+TEST(ReportIdentity, NegativeControlATemplateWithoutAMarkIsRefused) {
+  EXPECT_THROW(reportHtml(sampleRun(), "{{status}}{{counts}}{{changes}}{{verdicts}}"), CDInputError);
+}
+
+TEST(ReportIdentity, ValuesBecomeCommands) {
+  EXPECT_NE(valuesTex(sampleRun()).find("\n\\malusval{T1.a}{1.5}\n"), std::string::npos);
+}
+
+TEST(ReportInvariant, APartialRunLeavesTheWholeReportAlone) {
+  const Scratch scratch;
+  put(scratch / "report.template.html", page);
+  CDRun run = sampleRun();
+  writeReport(run, scratch / "out", scratch.path);
+  const std::string whole = contents(scratch / "out/report.html"), values = contents(scratch / "out/values.tex");
+  run.whole = false;
+  run.items.pop_back();
+  writeReport(run, scratch / "out", scratch.path);
+  EXPECT_EQ(contents(scratch / "out/report.html"), whole);
+  EXPECT_EQ(contents(scratch / "out/values.tex"), values);
+  EXPECT_NE(contents(scratch / "out/partial.html"), "");
+  EXPECT_EQ(filesBelow(scratch / "out"), 7u);
+}
+
+TEST(ReportInvariant, TwoReportsOfOneRunAreTheSameBytes) {
+  EXPECT_EQ(reportHtml(sampleRun(), page), reportHtml(sampleRun(), page));
+  EXPECT_EQ(reportJson(sampleRun()), reportJson(sampleRun()));
+}
