@@ -25,5 +25,5 @@ plot for [k=0:48] 'ellipses.csv' every ::(73*k)::(73*k+72) \
        using (column('psi_deg')+kx*column('Ex')):(column('chi_deg')+ky*column('Ey')):(hue(column('chi_deg'))) \
        with lines linecolor rgb variable linewidth 2 dashtype solid, \
      for [k=0:48] 'ellipses.csv' every ::(73*k+10)::(73*k+10) \
-       using (column('psi_deg')+kx*column('Ex')):(column('chi_deg')+ky*column('Ey')):(column('chi_deg') ? kx*column('dEx') : NaN):(ky*column('dEy')):(hue(column('chi_deg'))) \
+       using (column('psi_deg')+kx*column('Ex')):(column('chi_deg')+ky*column('Ey')):(column('chi_deg') != 0 ? kx*column('dEx') : NaN):(ky*column('dEy')):(hue(column('chi_deg'))) \
        with vectors head filled size screen 0.011,25 fixed linecolor rgb variable linewidth 2
