@@ -10,7 +10,7 @@ GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 # What Debian 12 calls the things we stand on.
 PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev
-BOOK    := latexml fonts-lmodern
+BOOK    := latexml fonts-texgyre fonts-texgyre-math
 
 .PHONY: all test book reproduce bench format dist sanitize clang coverage fresh-machine clean help
 .PHONY: need-program need-book
@@ -23,7 +23,7 @@ all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-program $(BUILD)/CMakeCache.txt ## build and run all tests
+test: need-book $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's as well
 	@cmake --build $(BUILD) -j $(JOBS)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
@@ -47,18 +47,18 @@ format: ## let clang-format format the chapters' code and the tests
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
 	@cmake --build $(BUILD) -j $(JOBS) --target dist
 
-sanitize: need-program ## all tests under the address and undefined-behaviour sanitizers
+sanitize: need-book ## all tests under the address and undefined-behaviour sanitizers
 	@cmake --preset sanitize $(GENERATOR) >/dev/null
 	@cmake --build build-sanitize -j $(JOBS)
 	@ctest --test-dir build-sanitize -j $(JOBS) --output-on-failure --progress
 
-clang: need-program ## all tests as compiled by clang++
+clang: need-book ## all tests as compiled by clang++
 	@$(NEED) clang
 	@cmake --preset clang $(GENERATOR) >/dev/null
 	@cmake --build build-clang -j $(JOBS)
 	@ctest --test-dir build-clang -j $(JOBS) --output-on-failure --progress
 
-coverage: need-program ## which lines of nw/ the tests reach
+coverage: need-book ## which lines of nw/ the tests reach
 	@cmake --preset coverage $(GENERATOR) >/dev/null
 	@cmake --build build-coverage -j $(JOBS)
 	@find build-coverage -name '*.gcda' -delete

@@ -1,0 +1,20 @@
+"""What can be wrong with a book: a file, a line, and a sentence."""
+
+
+class Problem(Exception):
+    """Something an author must mend; printed as compilers print, so that editors can jump to it."""
+
+    def __init__(self, path, line, sentence):
+        super().__init__(f"{path}:{line}: {sentence}" if line else f"{path}: {sentence}")
+
+
+class Problems(Exception):
+    """Several of them."""
+
+    def __init__(self, problems):
+        super().__init__("\n".join(map(str, problems)))
+
+
+def stop_if_any(problems):
+    if problems:
+        raise Problems(problems)

@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""The loom's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+
+Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
+the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+LOOM = os.path.join(ROOT, "doc", "loom")
+sys.path.insert(0, LOOM)
+import latexml  # noqa: E402
+import listing  # noqa: E402
+import noweb  # noqa: E402
+import references  # noqa: E402
+from problems import Problem  # noqa: E402
+
+FIRST = r"""\chapter{Reflection}\label{ch:first}
+The reflectance \cite{hecht1990} is computed by [[reflect_it]], which prints [[a < b -- 'c']]; see
+\eqref{eq:first:rs} and chapter~\ref{ch:second}. At Brewster's angle, \val{F3.9.brewster} degrees, it is zero.
+\begin{equation} R_s = |r_s|^2 \label{eq:first:rs} \tag{3.50} \end{equation}
+
+\section{The code}
+<<Reflect a ray>>=
+double reflect_it(double n) {
+  std::cerr @<< "n = " @<< n;
+  <<Square [[n]]>>
+}
+@ %def reflect_it
+
+Not a chunk: [[@<<only prose>>]]; and 1 < 2.
+
+<<Square [[n]]>>=
+return n * n;
+@
+\begin{figure}\centering\includegraphics{F3.9/fresnel}
+\caption{Reflectances against $\theta_i$ for $n=2$.}\label{fig:F3.9}\end{figure}
+"""
+
+SECOND = r"""\chapter{Use}\label{ch:second}
+Equation \eqref{eq:first:rs} again, and figure~\ref{fig:F3.9}.\footnote{A note.}
+
+<<matter/use.cpp>>=
+<<Reflect a ray>>
+int main() { return reflect_it(2) > 0; }  // reflect_it is not linked here
+@
+
+<<Reflect a ray>>=
+// more
+@
+"""
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480"><rect width="640" height="480"/></svg>'
+
+
+class Workshop(unittest.TestCase):
+    """A scratch directory with a two-chapter book; weave() runs the weaver as CMake does."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.mkdtemp()  # LaTeXML's work is kept from test to test, as it is from build to build
+        cls.addClassCleanup(shutil.rmtree, cls.shared)
+
+    def setUp(self):
+        self.dir = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.dir)
+        self.put("nw/light/first.nw", FIRST)
+        self.put("nw/matter/second.nw", SECOND)
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{63.43}\n")
+        self.put("report/F3.9/fresnel.svg", SVG)
+
+    def put(self, name, text):
+        path = os.path.join(self.dir, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def get(self, name):
+        with open(os.path.join(self.dir, "book", name), encoding="utf-8") as file:
+            return file.read()
+
+    def weave(self):
+        """(exit code, complaints)"""
+        done = subprocess.run(
+            [os.path.join(LOOM, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
+             os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
+             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/matter/second.nw"],
+            cwd=self.dir, capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def check_links(self):
+        done = subprocess.run([os.path.join(LOOM, "links.py"), "book"], cwd=self.dir, capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+
+class WovenBook(Workshop):
+    """What a reader must find."""
+
+    def setUp(self):
+        super().setUp()
+        self.assertEqual(self.weave(), (0, ""))
+        self.first, self.second = self.get("light-first.html"), self.get("matter-second.html")
+
+    def test_links_and_pictures_are_whole(self):
+        self.assertEqual(self.check_links(), (0, ""))
+
+    def test_equation_keeps_the_number_of_the_thesis_and_is_linked_from_the_other_chapter(self):
+        self.assertIn('id="eq:first:rs"', self.first)
+        self.assertIn("(3.50)", self.first)
+        self.assertRegex(self.second, r'\(<a href="light-first.html#eq:first:rs"[^>]*>3.50</a>\)')
+
+    def test_chapters_sections_and_figures_are_numbered_through_the_book(self):
+        self.assertRegex(self.first, r'chapter <a href="matter-second.html#ch:second"[^>]*>2</a>'.replace(" ", "[ \u00a0]", 1))
+        self.assertIn('<section id="the-code"', self.first)
+        self.assertRegex(self.second, r'<a href="light-first.html#fig:F3.9"[^>]*>1.1</a>')
+
+    def test_chunks_are_numbered_in_the_order_of_the_book_and_joined_both_ways(self):
+        self.assertRegex(self.first, r'(?s)id="chunk-reflect-a-ray">.*?href="#chunk-reflect-a-ray">1</a>')
+        self.assertRegex(self.first, r'class="use" href="#chunk-square-n">⟨Square <code>n</code> <span class="chunk-number">2<')
+        self.assertRegex(self.first, r'Continued in <a href="matter-second.html#chunk-reflect-a-ray"[^>]*>4</a>')
+        self.assertRegex(self.second, r'Continues <a href="light-first.html#chunk-reflect-a-ray"[^>]*>1</a>')
+        self.assertRegex(self.first, r'Used in <a href="matter-second.html#chunk-matter-use-cpp"[^>]*>3</a>')
+        self.assertIn("+≡", self.second)
+
+    def test_identifiers_lead_from_each_use_to_the_definition_and_back(self):
+        self.assertRegex(self.second, r'return <a class="identifier" href="light-first.html#chunk-reflect-a-ray"'.replace("return ", ""))
+        self.assertIn("// reflect_it is not linked here", self.second)
+        self.assertRegex(self.first, r'Defines <code>reflect_it</code>, used in <a href="matter-second.html#chunk-matter-use-cpp"')
+        self.assertRegex(self.get("identifiers.html"), r"<code>reflect_it</code></td><td><a [^>]*>1</a></td><td><a [^>]*>3</a>")
+        self.assertIn("⟨Square <code>n</code>⟩", self.get("chunks.html"))
+
+    def test_quotes_and_escapes_print_the_characters_that_were_meant(self):
+        self.assertIn("a &lt; b -- 'c'", self.first)
+        self.assertIn('std::cerr &lt;&lt; <span class="string">"n = "</span> &lt;&lt; n;', self.first)
+        self.assertRegex(self.first, r"Not a chunk: <span [^>]*>&lt;&lt;only prose&gt;&gt;</span>; and 1 &lt; 2\.")
+        self.assertRegex(self.first, r'href="#chunk-reflect-a-ray"[^>]*lit-identifier[^>]*>reflect_it</a>')
+
+    def test_value_figure_citation_and_source_line(self):
+        self.assertIn("63.43 degrees", self.first)
+        self.assertRegex(self.first, r'<img src="figures/F3.9/fresnel.svg" alt="Figure 1.1: Reflectances against \\theta_\{i\}'
+                                     r' for n=2." width="640" height="480">')
+        self.assertRegex(self.first, r'\[<a href="bibliography.html#hecht1990"[^>]*>1</a>\]')
+        self.assertRegex(self.get("bibliography.html"), r'\[1\]</span> Eugene Hecht\. <em[^>]*>Optics</em>')
+        self.assertIn("Edit this chapter: <code>nw/light/first.nw</code>", self.first)
+
+    def test_needs_no_script_and_no_network(self):
+        pages = "".join(self.get(name) for name in os.listdir(os.path.join(self.dir, "book")) if name.endswith(".html"))
+        self.assertNotIn("<script", pages)
+        self.assertNotRegex(pages, r'src="https?:')
+
+    def test_a_page_that_no_longer_belongs_to_the_book_is_removed(self):
+        self.put("book/old.html", "old")
+        self.assertEqual(self.weave(), (0, ""))
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "book", "old.html")))
+
+
+class BrokenBook(Workshop):
+    """Negative controls of the weaver: one fault each."""
+
+    def fails(self, *fragments):
+        code, complaint = self.weave()
+        self.assertEqual(code, 1)
+        for fragment in fragments:
+            self.assertIn(fragment, complaint)
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "book")), "half a book was written")
+
+    def test_unknown_value(self):
+        self.put("report/values.tex", "\\malusval{F3.9.brewstar}{63.43}\n")
+        self.fails("nw/light/first.nw:3:", r"\val{F3.9.brewster}")
+
+    def test_missing_figure(self):
+        os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
+        self.fails("nw/light/first.nw:19:", "F3.9/fresnel")
+
+    def test_unknown_label_names_all_places(self):
+        self.put("nw/light/first.nw", FIRST.replace(r"\label{eq:first:rs}", ""))
+        self.fails("nw/light/first.nw:3:", "nw/matter/second.nw:2:", "eq:first:rs")
+
+    def test_label_given_twice(self):
+        self.put("nw/matter/second.nw", SECOND + "\\section{Again}\\label{ch:first}\n")
+        self.fails("nw/matter/second.nw:12:", "ch:first", "nw/light/first.nw")
+
+    def test_unknown_citation(self):
+        self.put("nw/light/first.nw", FIRST.replace("hecht1990", "hecht1991"))
+        self.fails("nw/light/first.nw:2:", "hecht1991")
+
+    def test_undefined_chunk(self):
+        self.put("nw/light/first.nw", FIRST.replace("<<Square [[n]]>>=", "<<Square of [[n]]>>="))
+        self.fails("nw/light/first.nw", "Square [[n]]")
+
+    def test_latex_command_that_does_not_exist_is_told_with_its_line(self):
+        self.put("nw/light/first.nw", FIRST.replace(r"\section{The code}", r"\section{The code} \sectoin"))
+        self.fails("nw/light/first.nw:6:", r"\sectoin")
+
+    def test_value_in_a_comment_is_not_asked_for(self):
+        self.put("nw/light/first.nw", FIRST.replace("it is zero.", "it is zero. % \\val{nothing}"))
+        self.assertEqual(self.weave(), (0, ""))
+
+
+class SpoiledBook(Workshop):
+    """Negative controls of the checker of links."""
+
+    def spoiled(self, name, old, new, complaint):
+        self.assertEqual(self.weave(), (0, ""))
+        text = self.get(name)
+        self.assertIn(old, text)
+        self.put("book/" + name, text.replace(old, new))
+        code, said = self.check_links()
+        self.assertEqual(code, 1)
+        self.assertIn(complaint, said)
+
+    def test_broken_anchor(self):
+        self.spoiled("light-first.html", 'id="eq:first:rs"', 'id="eq:first:rp"', "#eq:first:rs names no place")
+
+    def test_lost_picture(self):
+        self.spoiled("light-first.html", "figures/F3.9/fresnel.svg", "figures/lost.svg", "lost.svg does not exist")
+
+    def test_picture_without_words(self):
+        self.spoiled("light-first.html", 'alt="Figure', 'data-alt="Figure', "has no words")
+
+    def test_something_loaded_from_elsewhere(self):
+        self.spoiled("light-first.html", 'href="book.css"', 'href="https://example.org/book.css"', "loaded from elsewhere")
+
+    def test_script(self):
+        self.spoiled("index.html", "</main>", "<script></script></main>", "a script")
+
+
+class Parts(unittest.TestCase):
+    """The loom's parts by themselves."""
+
+    def test_latex_has_the_lines_of_the_chapter(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "first.nw")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(FIRST)
+            latex = noweb.read([path])[0].latex().split("\n")
+        written = FIRST.split("\n")
+        self.assertEqual(len(latex), len(written))
+        for number, line in enumerate(written):
+            if line.startswith("\\"):
+                self.assertEqual(latex[number], line, f"line {number + 1}")
+
+    def test_every_chapter_of_the_book_keeps_its_lines(self):
+        for folder, _, files in os.walk(os.path.join(ROOT, "nw")):
+            for name in files:
+                path = os.path.join(folder, name)
+                with open(path, encoding="utf-8") as file:
+                    text = file.read()
+                with self.subTest(name):
+                    self.assertEqual(noweb.read([path])[0].latex().count("\n"), text.count("\n"))
+
+    def test_coloured_code_loses_no_character(self):
+        code = 'R"(a "raw" // string)" \'"\' 1\'000.5e-3 /* two\nlines */ #include <x>\n#include <y>\nauto s = "\\"//";'
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "code.nw")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(f"Text.\n<<Code>>=\n{code}\n@\n")
+            chapters = noweb.read([path])
+        import html
+        painted = listing.Listing(chapters).code(chapters[0].chunks[0])
+        self.assertEqual(html.unescape(re.sub(r"<[^>]*>", "", painted)), code)
+        self.assertIn('<span class="comment">/* two\nlines */</span>', painted)
+        self.assertIn('<span class="string">"\\"//"</span>', painted)
+
+    def test_bibliography_entry_without_a_needed_field_stops_with_its_line(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".bib") as file:
+            file.write("% comment\n@book{good, title = {A {B}}, publisher = {P}, year = {1999}}\n"
+                       "@article{bad, author = {C, D}, title = {E}, year = {2000}}\n")
+            file.flush()
+            with self.assertRaisesRegex(Problem, r":3: bad lacks journal"):
+                references.read(file.name)
+
+    def test_names_of_people(self):
+        self.assertEqual(references.people("Born, Max and Wolf, Emil"), "Max Born and Emil Wolf")
+        self.assertEqual(references.people("A, B and C, D and E, F"), "B A, D C and F E")
+
+    def test_slugs(self):
+        self.assertEqual(latexml.slug("Add: the (two) Stokes_vectors!"), "add-the-two-stokes-vectors")
+
+
+if __name__ == "__main__":
+    unittest.main()
