@@ -200,9 +200,10 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, StokesSumsOfMixtures, (unsigned seed)) {
   demand(w * va, each<4>(n, [&](auto i) { return times(a[i], w); }));
   demand(va / 0.25, each<4>(n, [&](auto i) { return times(a[i], 4); }));
   Stokes self = va;
-  self += self;
+  const Stokes& alias = self;
+  self += alias;
   demand(self, each<4>(n, [&](auto i) { return times(a[i], 2); }));
-  self -= self;
+  self -= alias;
   demand(self, each<4>(n, [&](auto i) { return times(a[i], 0); }));
 }
 
