@@ -301,6 +301,7 @@ RC_GTEST_PROP(FresnelInvariant, ABoundaryIsRealisableAndDoesNotDepolarise, ()) {
   RC_ASSERT(f.im >= 0);
   // Rs Rp = |rs rp*|^2
   RC_ASSERT(std::abs(f.sum * f.sum - f.diff * f.diff - f.re * f.re - f.im * f.im) < 1e-14);
+  RC_ASSERT(isRealizable(fresnelReflectionMatrix(theta, n, k), 1e-12));
 }
 
 TEST(FresnelPublished, FresnelsRhombOfIndex151) {
