@@ -95,6 +95,8 @@ def edits_of(text, chars, root):
         first, last = before.origin + 1, after.origin
         if first > last or text[first:last].strip():
             continue
+        if "\n" in text[first:last] and "\n" not in new and "//" in text[text.rfind("\n", 0, first) + 1:first]:
+            continue  # a comment ends with its line
         lines = new.split("\n")
         for i in range(1, len(lines)):
             lines[i] = lines[i][after.indent:] if i == len(lines) - 1 else ""
