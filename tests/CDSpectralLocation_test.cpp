@@ -1,4 +1,5 @@
-// Band responses, grids, and the weights of interpolation and averaging (nw/light/CDSpectralLocation.nw).
+// Band responses, grids, and the weights of interpolation and averaging
+// (nw/light/CDSpectralLocation.nw).
 #include "light/CDSpectralLocation.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 const std::vector<CDExtrapolation> beyonds{CDExtrapolation::forbid, CDExtrapolation::hold,
                                            CDExtrapolation::zero, CDExtrapolation::linear};
 
-double weighted(const std::vector<CDSpectralWeight>& weights, const std::vector<double>& values) {
+double weighted(const std::vector<CDSpectralWeight>& weights,
+                const std::vector<double>& values) {
   double sum = 0;
   for (const auto& [index, weight] : weights) sum += weight * values.at(index);
   return sum;
@@ -48,7 +50,8 @@ double averageByQuadrature(const CDSpectralGrid& grid, const std::vector<double>
   std::sort(corners.begin(), corners.end());
   double sum = 0, area = 0;
   for (std::size_t c = 0; c + 1 < corners.size(); ++c) {
-    const double p = std::max(corners[c], band.lower_nm()), q = std::min(corners[c + 1], band.upper_nm());
+    const double p = std::max(corners[c], band.lower_nm()),
+                 q = std::min(corners[c + 1], band.upper_nm());
     if (!(p < q)) continue;
     constexpr int steps = 400;
     for (int i = 0; i < steps; ++i) {
@@ -154,17 +157,19 @@ RC_GTEST_PROP(CDSpectralLocationIdentity, AveragesAgreeWithQuadrature, (unsigned
       const double ours = weighted(grid->weights(band, beyond), v);
       const double theirs = averageByQuadrature(*grid, v, band, table_nm, beyond);
       // 400 midpoints a piece: second derivative times (piece/400)^2 / 24; the steepest is the
-      // Gaussian, 5.5/width^2 over pieces of at most 3 widths: 5.5 * 9 / 400^2 / 24 = 1.3e-5, of
-      // values of order one; a linear extrapolation may reach a few tens
+      // Gaussian, 5.5/width^2 over pieces of at most 3 widths: 5.5 * 9 / 400^2 / 24 = 1.3e-5,
+      // of values of order one; a linear extrapolation may reach a few tens
       RC_ASSERT(std::abs(ours - theirs) < 2e-5 * (1 + std::abs(theirs)));
-      auto perturbed = v;  // negative control: the entry with most weight changes by a thousandth
+      auto perturbed =
+          v;  // negative control: the entry with most weight changes by a thousandth
       const auto weights = grid->weights(band, beyond);
       if (weights.empty()) continue;
       const auto most = std::max_element(weights.begin(), weights.end(), [](auto a, auto b) {
         return std::abs(a.weight) < std::abs(b.weight);
       });
       perturbed[most->index] += 1e-2 * (1 + std::abs(theirs)) / std::abs(most->weight);
-      RC_ASSERT(std::abs(weighted(weights, perturbed) - theirs) > 2e-5 * (1 + std::abs(theirs)));
+      RC_ASSERT(std::abs(weighted(weights, perturbed) - theirs) >
+                2e-5 * (1 + std::abs(theirs)));
     }
 }
 
@@ -172,17 +177,22 @@ TEST(CDSpectralLocationInvariant, AStraightLineIsSeenAtTheCentroid) {
   const auto grid = CDSpectralGrid::make({300, 410, 415, 560, 700, 900});
   std::vector<double> line;
   for (const double nm : grid->nm()) line.push_back(3 - 0.01 * nm);
-  const auto read = [&](const CDSpectralLocation& band) { return weighted(grid->weights(band), line); };
+  const auto read = [&](const CDSpectralLocation& band) {
+    return weighted(grid->weights(band), line);
+  };
   // rounding of a dozen terms of size up to 10
   const double tolerance = 2e-14;
-  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::rectangular(44))), 3 - 5.573, tolerance);
-  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::gaussian(44))), 3 - 5.573, tolerance);
+  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::rectangular(44))), 3 - 5.573,
+              tolerance);
+  EXPECT_NEAR(read(CDSpectralLocation(557.3, CDBandResponse::gaussian(44))), 3 - 5.573,
+              tolerance);
   // a triangle that rises from 400 to 550 and falls at once: its centroid stands at 500
   EXPECT_NEAR(read(CDSpectralLocation(
                   520, CDBandResponse::tabulated({400, 550, 550.0000000001}, {0, 1, 0}))),
               3 - 5, 1e-11);  // the fall is 1e-10 nm wide
-  EXPECT_GT(std::abs(read(CDSpectralLocation(557.4, CDBandResponse::gaussian(44))) - (3 - 5.573)),
-            tolerance);  // negative control
+  EXPECT_GT(
+      std::abs(read(CDSpectralLocation(557.4, CDBandResponse::gaussian(44))) - (3 - 5.573)),
+      tolerance);  // negative control
 }
 
 TEST(CDSpectralLocationInvariant, ANarrowingBandTendsToInterpolation) {
@@ -191,17 +201,20 @@ TEST(CDSpectralLocationInvariant, ANarrowingBandTendsToInterpolation) {
   for (const double centre : {470.0, 550.0, 640.0}) {
     const double there = weighted(grid->weights(CDSpectralLocation(centre)), v);
     for (const double fwhm : {1.0, 1e-3, 1e-6})
-      for (const auto& response : {CDBandResponse::rectangular(fwhm), CDBandResponse::gaussian(fwhm)})
-        // at a corner the average differs by about the slope change times the width: 0.12 per nm
-        EXPECT_NEAR(weighted(grid->weights(CDSpectralLocation(centre, response)), v), there,
-                    0.12 * fwhm + 1e-9)  // 1e-9: end points near 550 rounded to 1e-13, over 1e-6 nm
+      for (const auto& response :
+           {CDBandResponse::rectangular(fwhm), CDBandResponse::gaussian(fwhm)})
+        // at a corner the average differs by about the slope change times the width: 0.12 per
+        // nm
+        EXPECT_NEAR(
+            weighted(grid->weights(CDSpectralLocation(centre, response)), v), there,
+            0.12 * fwhm + 1e-9)  // 1e-9: end points near 550 rounded to 1e-13, over 1e-6 nm
             << centre << " " << fwhm;
   }
 }
 
 TEST(CDSpectralLocationPublished, GaussianHalfMaximum) {
-  // the definition of the full width at half maximum; area of a Gaussian: fwhm sqrt(pi / ln 2) / 2
-  // (Abramowitz and Stegun 7.4.4), less the two tails beyond three widths (1.6e-12 of it)
+  // the definition of the full width at half maximum; area of a Gaussian: fwhm sqrt(pi / ln 2)
+  // / 2 (Abramowitz and Stegun 7.4.4), less the two tails beyond three widths (1.6e-12 of it)
   const auto response = CDBandResponse::gaussian(10);
   EXPECT_DOUBLE_EQ(response.at(500, 505), 0.5);
   EXPECT_DOUBLE_EQ(response.at(500, 495), 0.5);
@@ -246,7 +259,8 @@ TEST(CDSpectralLocationIdentity, ForbiddenBands) {
   EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {1, not_a_number}), CDMathError);
   EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {0, 0}), CDMathError);
   EXPECT_THROW(CDSpectralLocation(100, CDBandResponse::rectangular(200)), CDMathError);
-  EXPECT_THROW(CDSpectralLocation(600, CDBandResponse::tabulated({400, 500}, {1, 1})), CDMathError);
+  EXPECT_THROW(CDSpectralLocation(600, CDBandResponse::tabulated({400, 500}, {1, 1})),
+               CDMathError);
 }
 
 TEST(CDSpectralLocationIdentity, GridsAreOrderedAndNotEmpty) {
@@ -254,33 +268,44 @@ TEST(CDSpectralLocationIdentity, GridsAreOrderedAndNotEmpty) {
   EXPECT_THROW(CDSpectralGrid::make({450, 450}), CDGridError);
   EXPECT_THROW(CDSpectralGrid::make({550, 450}), CDGridError);
   EXPECT_THROW(CDSpectralGrid::make({450, not_a_number}), CDMathError);
-  EXPECT_EQ(message([] { CDSpectralGrid::make({450, 650, 550}); }),
+  EXPECT_EQ(message([] {
+              CDSpectralGrid::make({450, 650, 550});
+            }),
             "a spectral grid must increase in wavelength, but 550 nm follows 650 nm");
   // energies that fall are wavelengths that rise
-  const auto grid = CDSpectralGrid::make(std::vector<CDSpectralLocation>{
-      CDSpectralLocation({3, CDSpectralUnits::electronVolt}),
-      CDSpectralLocation({2, CDSpectralUnits::electronVolt})});
+  const auto grid = CDSpectralGrid::make(
+      std::vector<CDSpectralLocation>{CDSpectralLocation({3, CDSpectralUnits::electronVolt}),
+                                      CDSpectralLocation({2, CDSpectralUnits::electronVolt})});
   EXPECT_EQ(grid->in(CDSpectralUnits::electronVolt), (std::vector<double>{3, 2}));
   EXPECT_LT(grid->nm(0), grid->nm(1));
   EXPECT_EQ(grid->nm().size(), 2U);
 }
 
 TEST(CDSpectralLocationIdentity, DifferentGridsAreNamed) {
-  const auto a = CDSpectralGrid::make({450, 550, 650}), same = CDSpectralGrid::make({450, 550, 650});
+  const auto a = CDSpectralGrid::make({450, 550, 650}),
+             same = CDSpectralGrid::make({450, 550, 650});
   EXPECT_NO_THROW(demandSameGrid(*a, *a));
   EXPECT_NO_THROW(demandSameGrid(*a, *same));
-  const auto said = [&](const CDSpectralGridPtr& b) { return message([&] { demandSameGrid(*a, *b); }); };
+  const auto said = [&](const CDSpectralGridPtr& b) {
+    return message([&] { demandSameGrid(*a, *b); });
+  };
   const std::string remedy = "; bring one of them over explicitly with resampled(grid)";
   EXPECT_EQ(said(CDSpectralGrid::make({450, 551, 650})),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 entries from "
-            "450 to 650 nm, differing first at entry 1, 550 against 551 nm)" + remedy);
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 "
+            "entries from "
+            "450 to 650 nm, differing first at entry 1, 550 against 551 nm)" +
+                remedy);
   EXPECT_EQ(said(CDSpectralGrid::make({450})),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 1 entry at 450 "
-            "nm)" + remedy);
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 1 "
+            "entry at 450 "
+            "nm)" +
+                remedy);
   const auto filtered = CDSpectralGrid::make(std::vector<CDSpectralLocation>{
       CDSpectralLocation(450), CDSpectralLocation(550, CDBandResponse::gaussian(10)),
       CDSpectralLocation(650)});
   EXPECT_EQ(said(filtered),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 entries from "
-            "450 to 650 nm, with different band responses at 550 nm)" + remedy);
+            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 "
+            "entries from "
+            "450 to 650 nm, with different band responses at 550 nm)" +
+                remedy);
 }

@@ -26,18 +26,19 @@ TEST(CDSpectralPointIdentity, OrderedByWavelengthAcrossUnits) {
   EXPECT_GT(red, green);
   EXPECT_FALSE(red < blue);
   EXPECT_EQ(CDSpectralPoint(0.5, micrometre), CDSpectralPoint(500));
-  EXPECT_NE(CDSpectralPoint(0.5, micrometre), CDSpectralPoint(500.0000001));  // negative control
+  EXPECT_NE(CDSpectralPoint(0.5, micrometre),
+            CDSpectralPoint(500.0000001));  // negative control
 }
 
 TEST(CDSpectralPointPublished, SodiumDLine) {
-  // D. A. Steck, Sodium D Line Data (2000), table 3, D2: vacuum wavelength 589.158 326 4(15) nm,
-  // frequency 508.848 716 2(13) THz, wave number 16 973.366 160(3) cm^-1; tolerances are its
-  // uncertainties. (Its energy in eV rests on the older CODATA values of h and e.)
+  // D. A. Steck, Sodium D Line Data (2000), table 3, D2: vacuum wavelength 589.158 326 4(15)
+  // nm, frequency 508.848 716 2(13) THz, wave number 16 973.366 160(3) cm^-1; tolerances are
+  // its uncertainties. (Its energy in eV rests on the older CODATA values of h and e.)
   const CDSpectralPoint d2(589.1583264);
-  EXPECT_NEAR(d2.in(hertz) * 1e-12, 508.8487162, 1.3e-6);
+  EXPECT_NEAR(d2.in(hertz)*1e-12, 508.8487162, 1.3e-6);
   EXPECT_NEAR(d2.in(perCentimetre), 16973.366160, 3e-6);
   // negative control: the wavelength in air, 588.995 nm, belongs to another frequency
-  EXPECT_GT(std::abs(CDSpectralPoint(588.995).in(hertz) * 1e-12 - 508.8487162), 1.3e-6);
+  EXPECT_GT(std::abs(CDSpectralPoint(588.995).in(hertz)*1e-12 - 508.8487162), 1.3e-6);
 }
 
 TEST(CDSpectralPointInvariant, EveryPointIsPositiveAndFinite) {

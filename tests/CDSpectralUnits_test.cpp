@@ -14,7 +14,8 @@ using namespace malus;
 using enum CDSpectralUnits;
 
 namespace {
-const std::vector<CDSpectralUnits> all{nanometre, micrometre, perCentimetre, electronVolt, hertz};
+const std::vector<CDSpectralUnits> all{nanometre, micrometre, perCentimetre, electronVolt,
+                                       hertz};
 // three multiplications or divisions, each rounding by 1.1e-16
 constexpr double rounding = 5e-16;
 
@@ -29,10 +30,12 @@ TEST(CDSpectralUnitsPublished, ExactConstantsOfTheSI) {
 }
 
 TEST(CDSpectralUnitsPublished, ElectronvoltOfCODATA) {
-  // CODATA 2018, "electron volt-hertz relationship" and "electron volt-inverse meter relationship"
+  // CODATA 2018, "electron volt-hertz relationship" and "electron volt-inverse meter
+  // relationship"
   const double printed_digits = 1e-9;  // ten digits are printed
   EXPECT_LT(relative(convertSpectral(1, electronVolt, hertz), 2.417989242e14), printed_digits);
-  EXPECT_LT(relative(convertSpectral(1, electronVolt, perCentimetre), 8065.543937), printed_digits);
+  EXPECT_LT(relative(convertSpectral(1, electronVolt, perCentimetre), 8065.543937),
+            printed_digits);
   EXPECT_GT(relative(convertSpectral(1, electronVolt, perCentimetre), 8065.543947),
             printed_digits);  // negative control: one digit changed
   EXPECT_NEAR(convertSpectral(1, electronVolt, nanometre), 1239.84, 0.005);
@@ -49,7 +52,8 @@ TEST(CDSpectralUnitsIdentity, WorkedExamples) {
 }
 
 RC_GTEST_PROP(CDSpectralUnitsIdentity, RoundTrips, ()) {
-  const double nm = *rc::gen::map(rc::gen::inRange(100000, 20000000), [](int i) { return i * 1e-3; });
+  const double nm =
+      *rc::gen::map(rc::gen::inRange(100000, 20000000), [](int i) { return i * 1e-3; });
   for (const auto a : all)
     for (const auto b : all) {
       const double there = convertSpectral(nm, nanometre, a);
@@ -58,17 +62,18 @@ RC_GTEST_PROP(CDSpectralUnitsIdentity, RoundTrips, ()) {
       RC_ASSERT(relative(back * (1 + 1e-15), there) > rounding);  // negative control
       RC_ASSERT(convertSpectral(there, a, a) == there);
       const double density = convertSpectralDensity(there, 3, a, b);
-      RC_ASSERT(relative(convertSpectralDensity(convertSpectral(there, a, b), density, b, a), 3) <
-                2 * rounding);
+      RC_ASSERT(relative(convertSpectralDensity(convertSpectral(there, a, b), density, b, a),
+                         3) < 2 * rounding);
     }
 }
 
-// What is radiated between 400 and 700 nm does not depend on the axis. Simpson's rule on each axis;
-// the integrand is smooth, and halving the step shows the quadrature's own error.
+// What is radiated between 400 and 700 nm does not depend on the axis. Simpson's rule on each
+// axis; the integrand is smooth, and halving the step shows the quadrature's own error.
 TEST(CDSpectralUnitsInvariant, DensityConservesTheIntegral) {
   const auto per_nm = [](double nm) { return 1 + std::exp(-(nm - 520) * (nm - 520) / 5000); };
   const auto integral = [&](CDSpectralUnits units, int steps, bool convert) {
-    double a = convertSpectral(400, nanometre, units), b = convertSpectral(700, nanometre, units);
+    double a = convertSpectral(400, nanometre, units),
+           b = convertSpectral(700, nanometre, units);
     if (a > b) std::swap(a, b);
     double sum = 0;
     for (int i = 0; i <= steps; ++i) {
@@ -81,7 +86,8 @@ TEST(CDSpectralUnitsInvariant, DensityConservesTheIntegral) {
   };
   // over wavelength, in closed form: 300 + sqrt(5000 pi)/2 (erf - erf)
   const double w = std::sqrt(5000.0);
-  const double exact = 300 + w * std::sqrt(std::acos(-1.0)) / 2 * (std::erf(180 / w) + std::erf(120 / w));
+  const double exact =
+      300 + w * std::sqrt(std::acos(-1.0)) / 2 * (std::erf(180 / w) + std::erf(120 / w));
   for (const auto units : all) {
     // fourth order: the error of 2000 steps is about a fifteenth of its change from 1000 steps
     const double ours = integral(units, 2000, true);
@@ -103,7 +109,8 @@ TEST(CDSpectralUnitsIdentity, ForbiddenCoordinates) {
         if (bad > 0 && std::isfinite(bad) && (from == nanometre || from == micrometre) &&
             (to == nanometre || to == micrometre))
           continue;
-        EXPECT_THROW(convertSpectral(bad, from, to), CDMathError) << bad << symbolOf(from) << symbolOf(to);
+        EXPECT_THROW(convertSpectral(bad, from, to), CDMathError)
+            << bad << symbolOf(from) << symbolOf(to);
         EXPECT_THROW(convertSpectralDensity(bad, 1, from, to), CDMathError);
       }
 }
@@ -125,9 +132,10 @@ TEST(CDSpectralUnitsIdentity, AWrongNameIsToldWithItsPlace) {
     parseSpectralUnits("NM", {"copper.csv", 3, "units"});
     FAIL() << "NM was taken";
   } catch (const CDInputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "copper.csv:3: units = NM: is not a unit of the spectral axis; known are: nm, um, "
-              "cm^-1, eV, Hz");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "copper.csv:3: units = NM: is not a unit of the spectral axis; known are: nm, um, "
+        "cm^-1, eV, Hz");
   }
   for (const char* bad : {"", "m", "EV", "hz", " nm", "nm "})
     EXPECT_THROW(parseSpectralUnits(bad), CDInputError) << bad;

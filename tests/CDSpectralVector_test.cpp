@@ -1,6 +1,7 @@
-// Spectral vectors (nw/light/CDSpectralVector.nw). The reference is plain 4x4 algebra on promoted
-// numbers, written out here. Its operands are small multiples of 1/8, so that every sum of products is
-// exact in a double and results must agree to the last bit, however they were ordered or fused.
+// Spectral vectors (nw/light/CDSpectralVector.nw). The reference is plain 4x4 algebra on
+// promoted numbers, written out here. Its operands are small multiples of 1/8, so that every
+// sum of products is exact in a double and results must agree to the last bit, however they
+// were ordered or fused.
 #include "light/CDSpectralVector.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,8 @@ M times(const M& a, const M& b) {
   M product{{}, a.polarized || b.polarized};
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j)
-      for (std::size_t k = 0; k < 4; ++k) product.v[4 * i + j] += a.v[4 * i + k] * b.v[4 * k + j];
+      for (std::size_t k = 0; k < 4; ++k)
+        product.v[4 * i + j] += a.v[4 * i + k] * b.v[4 * k + j];
   return product;
 }
 M rotation(double theta) {  // eq 3.48
@@ -70,7 +72,9 @@ struct Draw {
     Plain<K> p{{}, polarized};
     const double scalar = eighths();
     for (std::size_t k = 0; k < K; ++k)
-      p.v[k] = polarized ? eighths() : k % 5 == 0 ? scalar : 0;  // eq (s,0,0,0) and m times identity
+      p.v[k] = polarized    ? eighths()
+               : k % 5 == 0 ? scalar
+                            : 0;  // eq (s,0,0,0) and m times identity
     return p;
   }
   // none, all, or some of the bands polarised
@@ -108,7 +112,8 @@ Mueller spectrumOf(const CDSpectralGridPtr& grid, const std::vector<M>& values) 
 
 // Values, states, and the three rules of the planes.
 template <class T, std::size_t K>
-bool agrees(const CDSpectralVector<T>& ours, const std::vector<Plain<K>>& plain, double tolerance = 0) {
+bool agrees(const CDSpectralVector<T>& ours, const std::vector<Plain<K>>& plain,
+            double tolerance = 0) {
   bool any = false;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     any = any || plain[i].polarized;
@@ -137,7 +142,8 @@ std::vector<Plain<K>> otherState(std::vector<Plain<K>> plain) {
 }
 // a result agrees, and neither a changed number nor a changed state would
 template <class T, std::size_t K>
-void demand(const CDSpectralVector<T>& ours, const std::vector<Plain<K>>& plain, double tolerance = 0) {
+void demand(const CDSpectralVector<T>& ours, const std::vector<Plain<K>>& plain,
+            double tolerance = 0) {
   RC_ASSERT(agrees(ours, plain, tolerance));
   RC_ASSERT(!agrees(ours, perturbed(plain), tolerance));
   RC_ASSERT(!agrees(ours, otherState(plain), tolerance));
@@ -151,11 +157,15 @@ std::vector<Plain<K>> each(std::size_t bands, Operation operation) {
 
 // four bands as asked, and lengths below, at and above the width of the vector instructions
 const std::vector<std::size_t> lengths{4, 1, 2, 3, 5, 7, 8, 9, 64, 256};
-std::size_t anyLength() { return *rc::gen::weightedOneOf<std::size_t>({{3, rc::gen::just<std::size_t>(4)}, {1, rc::gen::elementOf(lengths)}}); }
+std::size_t anyLength() {
+  return *rc::gen::weightedOneOf<std::size_t>(
+      {{3, rc::gen::just<std::size_t>(4)}, {1, rc::gen::elementOf(lengths)}});
+}
 }  // namespace
 
 // ---------------------------------------------------------------------------------- published
-// Section 6.1.2 word for word, with the two misprints of eq 6.11 corrected (7.52 for 5.02, 1.20 for 1.10).
+// Section 6.1.2 word for word, with the two misprints of eq 6.11 corrected (7.52 for 5.02, 1.20
+// for 1.10).
 TEST(CDSpectralVectorPublished, WorkedExampleOfSection612) {
   const auto grid = CDSpectralGrid::make({450, 550, 650});
   Stokes Ein(grid);
@@ -163,20 +173,26 @@ TEST(CDSpectralVectorPublished, WorkedExampleOfSection612) {
   Ein[1] = CDStokesVector(6, 0, -2.5, 1);
   Ein[2] = 7.0;
   Mueller brdf(grid);
-  brdf[0] = CDMuellerMatrix({1.5, 0.01, 0, 0, 0.01, 1.7, 0, 0, 0, 0, -1.2, 0.4, 0, 0, -0.4, 1.2});
-  brdf[1] = CDMuellerMatrix({1.6, 0.02, 0, 0, 0.02, 1.75, 0, 0, 0, 0, -1.15, 0.35, 0, 0, -0.35, 1.15});
-  brdf[2] = CDMuellerMatrix({1.7, 0.03, 0, 0, 0.03, 1.8, 0, 0, 0, 0, -1.1, 0.3, 0, 0, -0.3, 1.1});
+  brdf[0] =
+      CDMuellerMatrix({1.5, 0.01, 0, 0, 0.01, 1.7, 0, 0, 0, 0, -1.2, 0.4, 0, 0, -0.4, 1.2});
+  brdf[1] = CDMuellerMatrix(
+      {1.6, 0.02, 0, 0, 0.02, 1.75, 0, 0, 0, 0, -1.15, 0.35, 0, 0, -0.35, 1.15});
+  brdf[2] =
+      CDMuellerMatrix({1.7, 0.03, 0, 0, 0.03, 1.8, 0, 0, 0, 0, -1.1, 0.3, 0, 0, -0.3, 1.1});
   auto Lout = brdf * Ein;
   EXPECT_TRUE(Ein[0].isPolarized());
   EXPECT_FALSE(Ein[2].isPolarized());
   EXPECT_TRUE(Lout[2].isPolarized());
-  const double printed[3][4] = {{7.52, 3.45, 1.20, 0.40}, {9.600, 0.120, 3.225, 2.025}, {11.90, 0.21, 0, 0}};
-  // the operands have few digits, so the products are those of the print up to rounding of sums near 10
+  const double printed[3][4] = {
+      {7.52, 3.45, 1.20, 0.40}, {9.600, 0.120, 3.225, 2.025}, {11.90, 0.21, 0, 0}};
+  // the operands have few digits, so the products are those of the print up to rounding of sums
+  // near 10
   const double rounding = 4e-15;
   for (int band = 0; band < 3; ++band)
     for (int i = 0; i < 4; ++i)
       EXPECT_NEAR(Lout[band].getStokes(i), printed[band][i], rounding) << band << " " << i;
-  EXPECT_GT(std::abs(Lout[0].getStokes(0) - 5.02), rounding);  // as printed in eq 6.11: both are wrong
+  EXPECT_GT(std::abs(Lout[0].getStokes(0) - 5.02),
+            rounding);  // as printed in eq 6.11: both are wrong
   EXPECT_GT(std::abs(Lout[0].getStokes(2) - 1.10), rounding);
   EXPECT_DOUBLE_EQ(Lout[0].getDOP(), std::sqrt(3.45 * 3.45 + 1.2 * 1.2 + 0.4 * 0.4) / 7.52);
   EXPECT_DOUBLE_EQ(Lout[2].getDOP(), 0.21 / 11.9);
@@ -218,7 +234,8 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, MuellerSumsOfMixtures, (unsigned seed)) 
   demand(va + vb, each<16>(n, [&](auto i) { return plus(a[i], b[i], 1); }));
   demand(va - vb, each<16>(n, [&](auto i) { return plus(a[i], b[i], -1); }));
   demand(vb - va, each<16>(n, [&](auto i) { return plus(b[i], a[i], -1); }));
-  demand(Mueller(va).addScaled(vb, w), each<16>(n, [&](auto i) { return plus(a[i], b[i], w); }));
+  demand(Mueller(va).addScaled(vb, w),
+         each<16>(n, [&](auto i) { return plus(a[i], b[i], w); }));
   demand(w * va, each<16>(n, [&](auto i) { return times(a[i], w); }));
   demand(va / 0.25, each<16>(n, [&](auto i) { return times(a[i], 4); }));
 }
@@ -236,14 +253,18 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, ProductsOfMixtures, (unsigned seed)) {
   const auto as = each<4>(n, [&](auto i) { return times(a[i], s[i]); });
   demand(va * vb, ab);
   demand(va * vs, as);
-  demand(Stokes(vt).multiplyAdd(va, vs, w), each<4>(n, [&](auto i) { return plus(t[i], as[i], w); }));
-  demand(Mueller(vb).multiplyAdd(va, vb, w), each<16>(n, [&](auto i) { return plus(b[i], ab[i], w); }));
+  demand(Stokes(vt).multiplyAdd(va, vs, w),
+         each<4>(n, [&](auto i) { return plus(t[i], as[i], w); }));
+  demand(Mueller(vb).multiplyAdd(va, vb, w),
+         each<16>(n, [&](auto i) { return plus(b[i], ab[i], w); }));
   // the sum may stand among the operands
   Stokes sum = vs;
   demand(sum.multiplyAdd(va, sum, w), each<4>(n, [&](auto i) { return plus(s[i], as[i], w); }));
   Mueller left = va, right = vb;
-  demand(left.multiplyAdd(left, vb, w), each<16>(n, [&](auto i) { return plus(a[i], ab[i], w); }));
-  demand(right.multiplyAdd(va, right, w), each<16>(n, [&](auto i) { return plus(b[i], ab[i], w); }));
+  demand(left.multiplyAdd(left, vb, w),
+         each<16>(n, [&](auto i) { return plus(a[i], ab[i], w); }));
+  demand(right.multiplyAdd(va, right, w),
+         each<16>(n, [&](auto i) { return plus(b[i], ab[i], w); }));
 }
 
 RC_GTEST_PROP(CDSpectralVectorIdentity, SpectralScalarsTimesMixtures, (unsigned seed)) {
@@ -264,8 +285,10 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, SpectralScalarsTimesMixtures, (unsigned 
   demand(f * vm, fm);
   demand(vm * f, fm);
   demand(Mueller(vm) *= f, fm);
-  demand(spectrumOf(grid, t).multiplyAdd(f, vs, 0.5), each<4>(n, [&](auto i) { return plus(t[i], fs[i], 0.5); }));
-  demand(spectrumOf(grid, o).multiplyAdd(f, vm, 0.5), each<16>(n, [&](auto i) { return plus(o[i], fm[i], 0.5); }));
+  demand(spectrumOf(grid, t).multiplyAdd(f, vs, 0.5),
+         each<4>(n, [&](auto i) { return plus(t[i], fs[i], 0.5); }));
+  demand(spectrumOf(grid, o).multiplyAdd(f, vm, 0.5),
+         each<16>(n, [&](auto i) { return plus(o[i], fm[i], 0.5); }));
   Stokes self = vs;
   demand(self.multiplyAdd(f, self), each<4>(n, [&](auto i) { return plus(s[i], fs[i], 1); }));
   const Scalars product = f * f;
@@ -281,22 +304,29 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, RotationsOfMixtures, (unsigned seed)) {
   const double theta = draw.eighths();
   const M r = rotation(theta), back = rotation(-theta);
   const double rounding = 2e-14;  // a dozen roundings of numbers up to 16
-  const auto keepState = [](auto turned, const auto& old) { return old.polarized ? turned : old; };
+  const auto keepState = [](auto turned, const auto& old) {
+    return old.polarized ? turned : old;
+  };
   demand(spectrumOf(grid, s).rotate(theta),
          each<4>(n, [&](auto i) { return keepState(times(r, s[i]), s[i]); }), rounding);
   demand(spectrumOf(grid, m).rotate(theta),
-         each<16>(n, [&](auto i) { return keepState(times(times(r, m[i]), back), m[i]); }), rounding);
+         each<16>(n, [&](auto i) { return keepState(times(times(r, m[i]), back), m[i]); }),
+         rounding);
 }
 
-// What single values do, whole spectra do: against nw/light/CDPolarimetricMath.nw, band by band.
+// What single values do, whole spectra do: against nw/light/CDPolarimetricMath.nw, band by
+// band.
 RC_GTEST_PROP(CDSpectralVectorInvariant, SpectraAgreeWithSingleValues, (unsigned seed)) {
   Draw draw(seed);
   const auto grid = gridOf(4);
   const Mueller m = spectrumOf(grid, draw.mixture<16>(4));
   const Stokes s = spectrumOf(grid, draw.mixture<4>(4));
   const Stokes product = m * s;
-  const auto dop = getDOP(s), dolp = getDOLP(s), docp = getDOCP(s), s0 = getScalar(s), m0 = getScalar(m);
-  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  const auto dop = getDOP(s), dolp = getDOLP(s), docp = getDOCP(s), s0 = getScalar(s),
+             m0 = getScalar(m);
+  const auto same = [](double a, double b) {
+    return a == b || (std::isnan(a) && std::isnan(b));
+  };
   for (std::size_t i = 0; i < 4; ++i) {
     RC_ASSERT(product[i] == m[i] * s[i]);
     RC_ASSERT(product[i].isPolarized() == (m[i] * s[i]).isPolarized());
@@ -356,7 +386,8 @@ TEST(CDSpectralVectorIdentity, PlanesComeAndGoWithPolarisation) {
   EXPECT_TRUE(v.anyPolarized());
   EXPECT_TRUE(v.isPolarized(2));
   EXPECT_FALSE(v.isPolarized(1));
-  for (int k = 1; k < 4; ++k) EXPECT_EQ(v.plane(k), v.plane(0) + 8 * k);  // one behind the other
+  for (int k = 1; k < 4; ++k)
+    EXPECT_EQ(v.plane(k), v.plane(0) + 8 * k);  // one behind the other
   v[2] = 7.0;  // the last polarised band goes, and the planes with it
   EXPECT_FALSE(v.anyPolarized());
   EXPECT_THROW(v.plane(1), CDMathError);
@@ -374,7 +405,8 @@ TEST(CDSpectralVectorIdentity, PlanesComeAndGoWithPolarisation) {
   EXPECT_THROW(v.plane(-1), std::out_of_range);
   Mueller m(gridOf(8), 3.0);
   m.polarize(5);
-  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(m.plane(15)[i], 3);  // promoted: m times identity
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_EQ(m.plane(15)[i], 3);  // promoted: m times identity
   EXPECT_THROW(m.plane(16), std::out_of_range);
 }
 
@@ -489,7 +521,8 @@ TEST(CDSpectralVectorIdentity, ForbiddenOperations) {
   EXPECT_EQ(v.at(2), 3);
 }
 
-// ---------------------------------------------------------------------------------- between bands
+// ---------------------------------------------------------------------------------- between
+// bands
 TEST(CDSpectralVectorIdentity, InterpolationOfMixtures) {
   const auto grid = CDSpectralGrid::make({450, 550, 650});
   Stokes v(grid);
@@ -521,7 +554,8 @@ RC_GTEST_PROP(CDSpectralVectorInvariant, ResamplingCommutesWithAddition, (unsign
   const auto to = CDSpectralGrid::make(std::vector<CDSpectralLocation>{
       CDSpectralLocation(401), CDSpectralLocation(404.3, CDBandResponse::gaussian(1)),
       CDSpectralLocation(407, CDBandResponse::rectangular(4)), CDSpectralLocation(410)});
-  const Stokes a = spectrumOf(from, draw.mixture<4>(5)), b = spectrumOf(from, draw.mixture<4>(5));
+  const Stokes a = spectrumOf(from, draw.mixture<4>(5)),
+               b = spectrumOf(from, draw.mixture<4>(5));
   const Stokes first = (a + b).resampled(to), second = a.resampled(to) + b.resampled(to);
   for (std::size_t i = 0; i < 4; ++i)
     for (int k = 0; k < 4; ++k) {
@@ -540,7 +574,8 @@ TEST(CDSpectralVectorInvariant, DensityConversionConservesTheIntegral) {
   Stokes v(grid);
   for (std::size_t i = 0; i < v.size(); ++i) {
     const double x = (nm[i] - 550) / 100;
-    v[i] = i % 2 ? CDStokesVector(2 + x, 1 - x * x, 0, 0) : CDStokesVector(2 + x, 1 - x * x, 0, 0.5);
+    v[i] = i % 2 ? CDStokesVector(2 + x, 1 - x * x, 0, 0)
+                 : CDStokesVector(2 + x, 1 - x * x, 0, 0.5);
   }
   const auto integral = [](const Stokes& s, CDSpectralUnits units, int k) {
     const auto x = s.grid().in(units);
@@ -555,17 +590,19 @@ TEST(CDSpectralVectorInvariant, DensityConversionConservesTheIntegral) {
     const Stokes converted = convertDensity(v, CDSpectralUnits::nanometre, units);
     for (int k : {0, 1}) {
       const double exact = k == 0 ? 600 : 300 * (1 - 0.75);  // in closed form
-      // trapezia: step^2/12 = 0.0019 nm^2 times the change of the slope from end to end, which is
-      // 0.06 per nm for S1 and a little more over the reciprocal axes
+      // trapezia: step^2/12 = 0.0019 nm^2 times the change of the slope from end to end, which
+      // is 0.06 per nm for S1 and a little more over the reciprocal axes
       EXPECT_NEAR(integral(converted, units, k), exact, 2e-4) << symbolOf(units) << k;
-      EXPECT_GT(std::abs(integral(v, units, k) - exact), 2e-4);  // negative control: not converted
+      EXPECT_GT(std::abs(integral(v, units, k) - exact),
+                2e-4);  // negative control: not converted
     }
     const Stokes back = convertDensity(converted, units, CDSpectralUnits::nanometre);
     EXPECT_NEAR(back[77].getStokes(1), v[77].getStokes(1), 1e-15);
   }
 }
 
-// ---------------------------------------------------------------------------------- other types
+// ---------------------------------------------------------------------------------- other
+// types
 namespace {
 struct Colour {  // a type of a user's own: addition, multiples, equality
   double r = 0, g = 0;
@@ -574,17 +611,22 @@ struct Colour {  // a type of a user's own: addition, multiples, equality
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 template <class A, class B>
-concept Multiplies = requires(CDSpectralVector<A> a, CDSpectralVector<B> b) { a * b; };
+concept Multiplies = requires(CDSpectralVector<A> a, CDSpectralVector<B> b) {
+  a* b;
+};
 }  // namespace
 
-static_assert(CDSpectralValue<double> && CDSpectralValue<float> && CDSpectralValue<std::complex<double>>);
+static_assert(CDSpectralValue<double> && CDSpectralValue<float> &&
+              CDSpectralValue<std::complex<double>>);
 static_assert(CDSpectralValue<CDStokesVector> && CDSpectralValue<CDMuellerMatrix>);
 static_assert(CDSpectralValue<Colour>);
 static_assert(!CDSpectralValue<int> && !CDSpectralValue<bool> && !CDSpectralValue<std::string>);
-static_assert(Multiplies<CDMuellerMatrix, CDStokesVector> && Multiplies<CDMuellerMatrix, CDMuellerMatrix>);
+static_assert(Multiplies<CDMuellerMatrix, CDStokesVector> &&
+              Multiplies<CDMuellerMatrix, CDMuellerMatrix>);
 static_assert(Multiplies<double, CDStokesVector> && Multiplies<Colour, double>);
 // what Mueller calculus does not know does not compile
-static_assert(!Multiplies<CDStokesVector, CDStokesVector> && !Multiplies<Colour, CDStokesVector>);
+static_assert(!Multiplies<CDStokesVector, CDStokesVector> &&
+              !Multiplies<Colour, CDStokesVector>);
 
 TEST(CDSpectralVectorIdentity, AnyTypeWithTheArithmetic) {
   const auto grid = CDSpectralGrid::make({450, 550});

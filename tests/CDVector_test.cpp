@@ -125,12 +125,14 @@ RC_GTEST_PROP(CDVectorIdentity, AnglesRoundTrip, (unsigned seed)) {
             rounding * std::abs(std::sin(v.getZenith())));  // negative control
 }
 
-// eqs 7.2, 7.3, 7.9, 7.10: the printed vectors have the printed angles, to the three printed digits
+// eqs 7.2, 7.3, 7.9, 7.10: the printed vectors have the printed angles, to the three printed
+// digits
 TEST(CDVectorPublished, FlatPlateDirections) {
   const double half_digit = 0.0005;  // of the printed components, which are of order one
   EXPECT_LT(distance(CDVector::fromAngles(pi / 6, pi), {-.5, 0, .866}), half_digit);
   EXPECT_LT(distance(CDVector::fromAngles(pi * 40 / 180, 0), {.643, 0, .766}), half_digit);
-  EXPECT_GT(distance(CDVector::fromAngles(pi * 41 / 180, 0), {.643, 0, .766}), half_digit);  // control
+  EXPECT_GT(distance(CDVector::fromAngles(pi * 41 / 180, 0), {.643, 0, .766}),
+            half_digit);  // control
 }
 
 RC_GTEST_PROP(CDVectorInvariant, FramesAreRightHandedAndOrthonormal, (unsigned seed)) {
@@ -180,11 +182,14 @@ RC_GTEST_PROP(CDVectorIdentity, RotationCarriesStokesFromFrameToFrame, (unsigned
   e = {e[0] - longitudinal * k.x, e[1] - longitudinal * k.y, e[2] - longitudinal * k.z};
   const Stokes before = stokesOf(e, from), after = stokesOf(e, to);
   const double theta = frameRotation(from, to);
-  const double tolerance = 40 * rounding * (1 + before[0]);  // some forty products and sums on the way
+  const double tolerance =
+      40 * rounding * (1 + before[0]);  // some forty products and sums on the way
   RC_ASSERT(worst(rotated(before, theta), after) < tolerance);
-  // negative control: the other way round fails, unless sin(2 theta) or the linear part vanishes
+  // negative control: the other way round fails, unless sin(2 theta) or the linear part
+  // vanishes
   const double seen = std::abs(std::sin(2 * theta)) * std::hypot(before[1], before[2]);
-  if (seen > 1e-6 * (1 + before[0])) RC_ASSERT(worst(rotated(before, -theta), after) > tolerance);
+  if (seen > 1e-6 * (1 + before[0]))
+    RC_ASSERT(worst(rotated(before, -theta), after) > tolerance);
 }
 
 RC_GTEST_PROP(CDVectorInvariant, RotationsCompose, (unsigned seed)) {
