@@ -339,38 +339,30 @@ TEST(BRDFTorranceSparrowIdentity, ScatterAddsAndNegativeControl) {
 
 TEST(BRDFTorranceSparrowIdentity, SinglePrecisionKernelsAgree) {
   const auto facet = facetGeometry(CDBRDFGeometry::fromDegrees(30, 50, 160));
-  const CDFacetLight<double> d{1.1,         0.01,        facet.cos_beta, facet.sin2_beta,
-                               facet.cos2i, facet.sin2i, facet.cos2r,    facet.sin2r};
-  const CDFacetLight<float> f{1.1f,
-                              0.01f,
-                              static_cast<float>(facet.cos_beta),
-                              static_cast<float>(facet.sin2_beta),
-                              static_cast<float>(facet.cos2i),
-                              static_cast<float>(facet.sin2i),
-                              static_cast<float>(facet.cos2r),
-                              static_cast<float>(facet.sin2r)};
+  const auto shared = [&](auto real) {
+    using Real = decltype(real);
+    const auto r = [](double x) { return static_cast<Real>(x); };
+    return CDFacetLight<Real>{
+        r(1.1),         r(0.01),        r(facet.cos_beta), r(facet.sin2_beta),
+        r(facet.cos2i), r(facet.sin2i), r(facet.cos2r),    r(facet.sin2r)};
+  };
   constexpr std::size_t n = 37;  // not a multiple of any vector length
-  std::array<double, n> e1, e2, in[4], out[4]{};
-  std::array<float, n> e1f, e2f, inf[4], outf[4]{};
+  std::vector<double> e1(n), e2(n), in(4 * n), out(4 * n);
   for (std::size_t j = 0; j < n; ++j) {
     const double index = 0.5 + 0.05 * static_cast<double>(j),
                  k = 0.1 * static_cast<double>(j % 5);
-    e1f[j] = static_cast<float>(e1[j] = index * index - k * k),
-    e2f[j] = static_cast<float>(e2[j] = 2 * index * k);
-    for (int c = 0; c < 4; ++c)
-      inf[c][j] =
-          static_cast<float>(in[c][j] = c == 0 ? 1 : 0.1 * (c + static_cast<int>(j) % 3));
+    e1[j] = index * index - k * k, e2[j] = 2 * index * k;
+    for (std::size_t c = 0; c < 4; ++c)
+      in[c * n + j] = c == 0 ? 1 : 0.1 * static_cast<double>(c + j % 3);
   }
-  scatterPolarized<double>(d, n, e1.data(), e2.data(),
-                           {in[0].data(), in[1].data(), in[2].data(), in[3].data()},
-                           {out[0].data(), out[1].data(), out[2].data(), out[3].data()});
-  scatterPolarized<float>(f, n, e1f.data(), e2f.data(),
-                          {inf[0].data(), inf[1].data(), inf[2].data(), inf[3].data()},
-                          {outf[0].data(), outf[1].data(), outf[2].data(), outf[3].data()});
-  for (std::size_t j = 0; j < n; ++j)
-    for (int c = 0; c < 4;
-         ++c)  // 24 bits, about twenty operations, no cancellation beyond a factor of ten
-      EXPECT_NEAR(outf[c][j], out[c][j], 3e-6) << j << ' ' << c;
+  const std::vector<float> e1f(e1.begin(), e1.end()), e2f(e2.begin(), e2.end()),
+      inf(in.begin(), in.end());
+  std::vector<float> outf(4 * n);
+  scatterPolarized(shared(0.0), n, e1.data(), e2.data(), in.data(), out.data(), n);
+  scatterPolarized(shared(0.0f), n, e1f.data(), e2f.data(), inf.data(), outf.data(), n);
+  for (std::size_t j = 0; j < 4 * n; ++j)
+    // 24 bits, about twenty operations, no cancellation beyond a factor of ten
+    EXPECT_NEAR(outf[j], out[j], 3e-6) << j;
 }
 
 TEST(BRDFTorranceSparrowIdentity, TheUnpolarisedModelIsF00) {
