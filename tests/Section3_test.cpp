@@ -2,13 +2,13 @@
 #include "thesis/Section3.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <rapidcheck/gtest.h>
 #include <set>
 #include <sstream>
 
@@ -25,8 +25,10 @@ constexpr double rounding = 1e-13;  // a few dozen operations on numbers of orde
 using Complex = std::complex<double>;
 using Jones = std::array<Complex, 4>;  // row by row
 
-// Jones and Pauli: M_ij = tr(s_i J s_j J^+)/2, with s_3 such that S3 = 2 Im(x y*), as phases are added to w t
-const std::array<Jones, 4> pauli{{{1, 0, 0, 1}, {1, 0, 0, -1}, {0, 1, 1, 0}, {0, Complex(0, 1), Complex(0, -1), 0}}};
+// Jones and Pauli: M_ij = tr(s_i J s_j J^+)/2, with s_3 such that S3 = 2 Im(x y*), as phases
+// are added to w t
+const std::array<Jones, 4> pauli{
+    {{1, 0, 0, 1}, {1, 0, 0, -1}, {0, 1, 1, 0}, {0, Complex(0, 1), Complex(0, -1), 0}}};
 
 Jones times(const Jones& a, const Jones& b) {
   return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
@@ -64,7 +66,8 @@ std::set<std::string> named(const CDItem& item, CDVerdict verdict) {
   return names;
 }
 
-CDItem ran(const std::string& id, CDItemFunction function, const std::string& data = "validation") {
+CDItem ran(const std::string& id, CDItemFunction function,
+           const std::string& data = "validation") {
   CDItem item(id, "nowhere", data);
   function(item);
   return item;
@@ -72,7 +75,8 @@ CDItem ran(const std::string& id, CDItemFunction function, const std::string& da
 }  // namespace
 
 TEST(Section3Identity, FollowsAnEllipseThatIsKnown) {
-  // E = (2 cos tau, sin tau): from x towards y, so counterclockwise, right-handed in the thesis's words
+  // E = (2 cos tau, sin tau): from x towards y, so counterclockwise, right-handed in the
+  // thesis's words
   const CDTracedEllipse right = traceEllipse(CDPlaneWave::of(2, 1, pi / 2));
   EXPECT_NEAR(right.a, 2, rounding);
   EXPECT_NEAR(right.b, 1, rounding);
@@ -86,12 +90,14 @@ TEST(Section3Identity, FollowsAnEllipseThatIsKnown) {
 RC_GTEST_PROP(Section3Identity, AnEllipseTurnedByAnAngleHasThatPsi, ()) {
   const double psi = *rc::gen::inRange(1, 180) * degree;
   const double chi = (*rc::gen::inRange(-44, 45) + 0.5) * degree;  // no circle, no line
-  // the ellipse in its own axes, a = cos chi along x', then turned: no formula of section 3.1.2.4 is used
+  // the ellipse in its own axes, a = cos chi along x', then turned: no formula of
+  // section 3.1.2.4 is used
   const Complex along = std::cos(chi), across = Complex(0, -std::sin(chi));
   const CDPlaneWave wave{std::cos(psi) * along - std::sin(psi) * across,
                          std::sin(psi) * along + std::cos(psi) * across};
   const CDTracedEllipse traced = traceEllipse(wave);
-  RC_ASSERT(std::abs(std::sin(traced.psi_rad - psi)) < 1e-11);  // rounding over cos 2 chi >= 0.017
+  RC_ASSERT(std::abs(std::sin(traced.psi_rad - psi)) <
+            1e-11);  // rounding over cos 2 chi >= 0.017
   RC_ASSERT(std::abs(traced.chi_rad - chi) < rounding);
 }
 
@@ -99,16 +105,21 @@ TEST(Section3Identity, TheBenchAgreesWithJonesAndPauli) {
   EXPECT_LT(farthest(measureMueller(polarizer(0.3)), muellerOf(polarizerJones(0.3))), rounding);
   const Jones lag{std::polar(1.0, -0.2), 0, 0, std::polar(1.0, -1.1)};
   EXPECT_LT(farthest(measureMueller(plate(0.2, 1.1)), muellerOf(lag)), rounding);
-  const double half = 0.5;  // right-circular light is (1, -i)/sqrt 2 when phases are added to w t
+  const double half =
+      0.5;  // right-circular light is (1, -i)/sqrt 2 when phases are added to w t
   const Jones right{half, Complex(0, half), Complex(0, -half), half};
   EXPECT_LT(farthest(measureMueller(circularFilter(+1)), muellerOf(right)), rounding);
   const auto cascade = inOrder({polarizer(0.3), plate(0.2, 1.1)});
-  EXPECT_LT(farthest(measureMueller(cascade), muellerOf(times(lag, polarizerJones(0.3)))), rounding);
+  EXPECT_LT(farthest(measureMueller(cascade), muellerOf(times(lag, polarizerJones(0.3)))),
+            rounding);
 }
 
 TEST(Section3Identity, NegativeControlAFilterTurnedByHalfADegreeIsSeen) {
-  EXPECT_GT(farthest(measureMueller(polarizer(0.3 + 0.5 * degree)), muellerOf(polarizerJones(0.3))), 1e-3);
-  EXPECT_GT(farthest(measureMueller(circularFilter(+1)), measureMueller(circularFilter(-1))), 0.9);
+  EXPECT_GT(
+      farthest(measureMueller(polarizer(0.3 + 0.5 * degree)), muellerOf(polarizerJones(0.3))),
+      1e-3);
+  EXPECT_GT(farthest(measureMueller(circularFilter(+1)), measureMueller(circularFilter(-1))),
+            0.9);
 }
 
 TEST(Section3Identity, AGreyFilterKeepsTheStateAndHalvesTheLight) {
@@ -119,8 +130,9 @@ TEST(Section3Identity, AGreyFilterKeepsTheStateAndHalvesTheLight) {
 
 TEST(Section3Published, TablesAndFiguresAreReproduced) {
   const std::pair<const char*, CDItemFunction> items[] = {
-      {"T3.1", reproduceT31}, {"T3.2", reproduceT32}, {"F3.1", reproduceF31}, {"F3.2", reproduceF32},
-      {"F3.3", reproduceF33}, {"F3.4", reproduceF34}, {"F3.9", reproduceF39}};
+      {"T3.1", reproduceT31}, {"T3.2", reproduceT32}, {"F3.1", reproduceF31},
+      {"F3.2", reproduceF32}, {"F3.3", reproduceF33}, {"F3.4", reproduceF34},
+      {"F3.9", reproduceF39}};
   for (const auto& [id, function] : items) {
     const CDItem item = ran(id, function);
     EXPECT_GE(item.claims().size(), 3u) << id;
@@ -146,8 +158,8 @@ TEST(Section3Published, EverySlipIsProvedAndEq378StandsAsPrinted) {
   const CDItem item = ran("N8", reproduceN8);
   EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"eq3.78"}));
   EXPECT_EQ(named(item, CDVerdict::differs), (std::set<std::string>{"table7.5"}));
-  for (const std::string slip : {"eq3.22", "eq3.29", "eq3.30", "eq3.41", "eq3.42", "eq3.43", "eq3.44",
-                                 "eq3.49", "eq3.76", "eq3.77", "eq5.8"})
+  for (const std::string slip : {"eq3.22", "eq3.29", "eq3.30", "eq3.41", "eq3.42", "eq3.43",
+                                 "eq3.44", "eq3.49", "eq3.76", "eq3.77", "eq5.8"})
     EXPECT_TRUE(named(item, CDVerdict::erratum).contains(slip)) << slip;
 }
 
@@ -172,12 +184,18 @@ TEST(Section3Published, NegativeControlACorruptedPrintIsSeen) {
   EXPECT_EQ(named(ran("T3.2", reproduceT32, table.path.string()), CDVerdict::differs),
             (std::set<std::string>{"vertical"}));
   const Corrupted copper("N8-copper.csv", "0.3026,", "0.3036,");
-  EXPECT_TRUE(named(ran("N8", [](CDItem& item) {
-                      try {
-                        reproduceN8(item);
-                      } catch (const CDInputError&) {  // the other printed file is not in the copy
-                      }
-                    }, copper.path.string()), CDVerdict::differs).contains("eq3.77"));
+  EXPECT_TRUE(
+      named(ran(
+                "N8",
+                [](CDItem& item) {
+                  try {
+                    reproduceN8(item);
+                  } catch (const CDInputError&) {  // the other printed file is not in the copy
+                  }
+                },
+                copper.path.string()),
+            CDVerdict::differs)
+          .contains("eq3.77"));
 }
 
 TEST(Section3Published, NegativeControlAMissingPrintStopsTheItem) {

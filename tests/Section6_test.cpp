@@ -1,0 +1,96 @@
+// The verdicts of the items of thesis chapter 6 and appendix A (nw/thesis/Section6.nw).
+#include "thesis/Section6.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "Scratch.hpp"
+#include "program/Harness.hpp"
+
+using namespace malus;
+
+namespace {
+std::set<std::string> named(const CDItem& item, CDVerdict verdict) {
+  std::set<std::string> names;
+  for (const CDClaim& claim : item.claims())
+    if (claim.verdict == verdict) names.insert(claim.name);
+  return names;
+}
+
+CDItem ran(const std::string& id, CDItemFunction function,
+           const std::string& data = "validation") {
+  CDItem item(id, "nowhere", data);
+  function(item);
+  return item;
+}
+
+/// The project with one text of validation/printed replaced by another, and the file sealed
+/// again.
+struct Corrupted : Scratch {
+  std::string data = (path / "validation").string();
+  Corrupted(const std::string& file, const std::string& from, const std::string& to) {
+    for (const char* folder : {"nw", "tests"})
+      std::filesystem::create_directory_symlink(std::filesystem::absolute(folder),
+                                                path / folder);
+    std::filesystem::create_directory(path / "validation");
+    std::filesystem::copy("validation/printed", path / "validation" / "printed",
+                          std::filesystem::copy_options::recursive);
+    const std::filesystem::path corrupted = path / "validation" / "printed" / file;
+    std::string text = contents(corrupted);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from << " in " << file;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+    put(corrupted, sealTable(text, file));
+  }
+};
+
+const std::set<std::string> none;
+}  // namespace
+
+TEST(Section6Published, TheWorkedExampleHasTwoMisprintedNumbersAndFiveSlips) {
+  const CDItem item = ran("E6.1", reproduceE61);
+  EXPECT_EQ(named(item, CDVerdict::differs), none);
+  EXPECT_EQ(named(item, CDVerdict::erratum),
+            (std::set<std::string>{"eq6.11.S0", "eq6.11.S2", "eq6.8.count", "eq6.9.count",
+                                   "eq6.10.count", "eq6.8.type", "eq6.5.realizable"}));
+  EXPECT_EQ(named(item, CDVerdict::reproduced).size(), 13u);
+}
+
+TEST(Section6Published, NegativeControlAChangedFactorOfTheExampleIsSeen) {
+  const Corrupted brdf("E6.1-brdf.csv", "6.6,550,1.6,", "6.6,550,1.7,");
+  const auto differs = named(ran("E6.1", reproduceE61, brdf.data), CDVerdict::differs);
+  EXPECT_TRUE(differs.contains("eq6.12.S0"));
+  EXPECT_FALSE(differs.contains("eq6.13.S0"));
+}
+
+TEST(Section6Published, TheAdaptiveGridIsAsFigure63Says) {
+  const CDItem item = ran("F6.3", reproduceF63);
+  EXPECT_EQ(named(item, CDVerdict::reproduced),
+            (std::set<std::string>{"best", "first", "eight", "solid-angles"}));
+  EXPECT_EQ(item.claims().size(), 4u);
+}
+
+TEST(Section6Published, EqualSolidAnglesFailInTheReadingThatTheThesisSuggests) {
+  const CDItem item = ran("C6", reproduceC6);
+  EXPECT_EQ(named(item, CDVerdict::erratum), (std::set<std::string>{"equal"}));
+  EXPECT_EQ(named(item, CDVerdict::differs), none);
+}
+
+TEST(Section6Published, TheMathTesterTestsWhatAppendixAListsAndSaysWhatIsLost) {
+  const CDItem item = ran("A.2", reproduceA2);
+  EXPECT_EQ(named(item, CDVerdict::differs), none);
+  EXPECT_EQ(named(item, CDVerdict::notTestable),
+            (std::set<std::string>{"matrices", "additions", "functions"}));
+}
+
+TEST(Section6Published, NegativeControlAnotherDataSetOrOperationIsSeen) {
+  const Corrupted data("A.2.csv", "psv1,8.7,", "psv1,8.8,");
+  EXPECT_EQ(named(ran("A.2", reproduceA2, data.data), CDVerdict::differs),
+            (std::set<std::string>{"data"}));
+  const Corrupted operations("A.2-operations.csv", "upsv1 / f1", "upsv1 / upsv2");
+  EXPECT_EQ(named(ran("A.2", reproduceA2, operations.data), CDVerdict::differs),
+            (std::set<std::string>{"operations"}));
+}
