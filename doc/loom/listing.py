@@ -25,6 +25,14 @@ TOKEN = re.compile(
       | (?P<other>\s+|.)""", re.VERBOSE | re.MULTILINE | re.DOTALL)
 
 
+MOST = 8  # uses of an identifier that are listed below its definition; the index lists all
+
+
+def anchor_of(word):
+    """A place in the index; letters, digits and underscores stay, others (operators) become their codes."""
+    return "id-" + re.sub(r"\W", lambda match: f".{ord(match[0]):x}", word)
+
+
 def name_html(name):
     """A chunk's name; it may quote code in double brackets."""
     parts = re.split(r"\[\[(.*?)\]\]", name)
@@ -43,9 +51,13 @@ class Listing:
         place = escape(f"{noweb.plain(chunk.name)}, {chunk.chapter.path}", quote=True)
         return f'<a href="chunk:{label}" title="{place}">{chunk.number}</a>'
 
-    def numbers(self, labels):
+    def numbers(self, labels, most=None, rest=""):
+        """Links in the order of the book; if there are more than most, the others are one link to rest."""
         unique = sorted(set(labels), key=lambda label: self.by_label[label].number)
-        return ", ".join(self.number(label) for label in unique)
+        shown = unique if most is None or len(unique) <= most + 1 else unique[:most]
+        out = ", ".join(self.number(label) for label in shown)
+        more = len(unique) - len(shown)
+        return f'{out} and <a href="{rest}">{more} more</a>' if more else out
 
     def use(self, chunk, token):
         name, label = chunk.used_chunks[int(token[1:-1])]
@@ -83,7 +95,7 @@ class Listing:
             notes.append("A file of the program")
         for word, users in chunk.defines:
             others = [label for label in users if label != chunk.label]
-            where = f", used in {self.numbers(others)}" if others else ""
+            where = f", used in {self.numbers(others, MOST, f'identifiers.html#{anchor_of(word)}')}" if others else ""
             notes.append(f"Defines <code>{escape(word)}</code>{where}")
         return ". ".join(notes) + "."
 
@@ -109,8 +121,8 @@ class Listing:
             for word, users in chunk.defines:
                 defined.setdefault(word, set()).add(chunk.label)
                 used.setdefault(word, set()).update(users)
-        rows = [f"<tr><td><code>{escape(word)}</code></td><td>{self.numbers(defined[word])}</td>"
-                f"<td>{self.numbers(used[word] - defined[word])}</td></tr>"
+        rows = [f'<tr id="{anchor_of(word)}"><td><code>{escape(word)}</code></td>'
+                f"<td>{self.numbers(defined[word])}</td><td>{self.numbers(used[word] - defined[word])}</td></tr>"
                 for word in sorted(defined, key=lambda word: (word.lower(), word))]
         return table(("Identifier", "defined in", "used in"), rows)
 

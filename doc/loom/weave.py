@@ -167,6 +167,7 @@ class Finisher:
                          re.DOTALL)
     FIGURE = re.compile(r'<span class="ltx_text lit-figure">([^<]*)</span>')
     PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
+    PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
 
     def __init__(self, links, chapters, listings):
@@ -178,7 +179,9 @@ class Finisher:
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
         html = re.sub(r'\s*<span class="ltx_tag ltx_tag_note">.*?</span>\s*', "", html)
-        html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)  # a prime is raised by itself
+        # the font's prime is raised already; raised again it would be small and high
+        html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)
+        html = self.PRIME_AND_INDEX.sub(r'<msub><mrow>\1<mo lspace="0" rspace="0">\3</mo></mrow>\2</msub>', html)
         html = self.HEADING.sub(lambda match: self.heading(page, match), html)
         html = self.FIGURE.sub(lambda match: self.figure(match, html), html)
         page.body = self.resolve(page, html)
@@ -307,7 +310,7 @@ class Book:
             return converter.to_html(page.name, page.source, page.root)
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            all_of(pool, first, pages)
+            all_of(pool, first, sorted(pages, key=lambda page: -len(page.latex)))  # the longest first: no long tail
             for page in pages:
                 for label, (anchor, number, _) in latexml.give_addresses(page.root).items():
                     self.links.labels[label] = (page, anchor, number)
