@@ -66,6 +66,18 @@ TEST(Section6Published, NegativeControlAChangedFactorOfTheExampleIsSeen) {
   EXPECT_FALSE(differs.contains("eq6.13.S0"));
 }
 
+TEST(Section6Published, TenClassesHaveTheirChaptersAndTests) {
+  const CDItem item = ran("T6.1", reproduceT61);
+  EXPECT_EQ(named(item, CDVerdict::reproduced).size(), item.claims().size());
+  EXPECT_EQ(item.claims().size(), 15u);  // ten classes and five sentences of section 6.2.2
+}
+
+TEST(Section6Published, NegativeControlAClassThatDoesNotExistIsSeen) {
+  const Corrupted classes("T6.1.csv", "\nCDVector\n", "\nCDTensor\n");
+  EXPECT_EQ(named(ran("T6.1", reproduceT61, classes.data), CDVerdict::differs),
+            (std::set<std::string>{"CDTensor"}));
+}
+
 TEST(Section6Published, TheAdaptiveGridIsAsFigure63Says) {
   const CDItem item = ran("F6.3", reproduceF63);
   EXPECT_EQ(named(item, CDVerdict::reproduced),
