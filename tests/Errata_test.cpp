@@ -1,0 +1,90 @@
+// Findings about the thesis, and the list of errata against the committed verdicts (nw/thesis/Errata.nw).
+#include "thesis/Errata.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+using namespace malus;
+
+namespace {
+CDItem run(const char* id, CDItemFunction function, const std::filesystem::path& data = "validation") {
+  CDItem item(id, std::filesystem::temp_directory_path(), data);
+  function(item);
+  return item;
+}
+
+long differing(const CDItem& item) {
+  long count = 0;
+  for (const CDClaim& claim : item.claims()) count += claim.verdict == CDVerdict::differs;
+  return count;
+}
+
+/// "item/claim" of every erratum in the committed verdicts.
+std::set<std::string> committedErrata() {
+  const CDTable table = CDTable::read("validation/verdicts.csv");
+  std::set<std::string> errata;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    if (table.cell(row, "verdict") == "erratum")
+      errata.insert(table.cell(row, "item") + "/" + table.cell(row, "claim"));
+  return errata;
+}
+
+/// Every \texttt{item/claim} in the chapter's list of errata; x..y stands for several claims of one kind.
+std::set<std::string> listedErrata(const std::string& text) {
+  std::set<std::string> errata;
+  const std::regex claim(R"(\\texttt\{([A-Z][A-Z0-9.]*/[^}]*)\})");
+  for (std::sregex_iterator match(text.begin(), text.end(), claim), end; match != end; ++match)
+    errata.insert(std::regex_replace(match->str(1), std::regex(R"(\\)"), ""));
+  return errata;
+}
+
+std::string chapter() {
+  std::ifstream file("nw/thesis/Errata.nw");
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+}  // namespace
+
+TEST(ErrataPublished, EveryFindingIsVerified) {
+  const std::map<const char*, CDItemFunction> findings{
+      {"N1", reproduceN1}, {"N2", reproduceN2}, {"N3", reproduceN3}, {"N4", reproduceN4},   {"N5", reproduceN5},
+      {"N6", reproduceN6}, {"N7", reproduceN7}, {"N9", reproduceN9}, {"N10", reproduceN10}, {"N11", reproduceN11}};
+  for (const auto& [id, function] : findings) EXPECT_EQ(differing(run(id, function)), 0) << id;
+}
+
+TEST(ErrataPublished, TheListHoldsAllCommittedErrataAndNoOthers) {
+  const std::set<std::string> committed = committedErrata(), listed = listedErrata(chapter());
+  for (const std::string& erratum : committed) EXPECT_TRUE(listed.contains(erratum)) << erratum << " is not listed";
+  for (const std::string& erratum : listed) EXPECT_TRUE(committed.contains(erratum)) << erratum << " has no proof";
+}
+
+TEST(ErrataPublished, NegativeControlAnInventedErratumIsSeen) {
+  const auto listed = listedErrata(chapter() + "\\texttt{T7.1/invented}");
+  EXPECT_TRUE(listed.contains("T7.1/invented"));
+  EXPECT_FALSE(committedErrata().contains("T7.1/invented"));
+}
+
+TEST(ErrataPublished, NegativeControlAChangedNumberOfTheTracedColumnIsSeen) {
+  const auto copy = std::filesystem::temp_directory_path() / "malus_errata_test";
+  std::filesystem::create_directories(copy / "printed");
+  const CDTable good = CDTable::read("validation/printed/T7.1.csv");
+  CDTableWriter bad(good.columns());
+  for (std::size_t row = 0; row < good.rows(); ++row) {
+    std::vector<CDCell> cells;
+    for (const std::string& column : good.columns()) {
+      const std::string cell = good.cell(row, column);
+      cells.emplace_back(cell == "34.07" ? "34.17" : cell);
+    }
+    bad.row(cells);
+  }
+  bad.save(copy / "printed" / "T7.1.csv");
+  EXPECT_GT(differing(run("N7", reproduceN7, copy)), 0);
+  std::filesystem::remove_all(copy);
+}

@@ -1,0 +1,26 @@
+# Finding 3: five hypotheses on the diffuse term, and the DoLP of aluminium under each.
+width = 1000; height = 440
+load style
+set multiplot
+set xrange [0:90]; set xtics 15; set xlabel 'view zenith [deg]'
+set lmargin 11; set rmargin 3
+set origin 0,0; set size 0.5,1
+set ylabel '(1 - DHR) / π [sr^{-1}]'
+set yrange [-0.01:0.06]
+set key top left Left reverse samplen 2
+plot 'hypotheses.csv' using 'view_deg':'none' with lines linetype 7 title 'no diffuse term', \
+     '' using 'view_deg':'incidence' with lines linetype 2 title 'V-groove at the incidence', \
+     '' using 'view_deg':'vgroove' with lines linetype 1 linewidth 3 title 'V-groove at the view', \
+     '' using 'view_deg':'unshadowed' with lines linetype 4 title 'unshadowed at the view', \
+     '' using 'view_deg':'smith' with lines linetype 3 title 'Smith at the view'
+set origin 0.5,0; set size 0.5,1
+set ylabel 'DoLP at 5 deg incidence'
+set yrange [0:0.04]
+unset key
+set object 1 rectangle from 60, graph 0 to 70, graph 1 fillcolor rgb '#eeeeee' fillstyle solid noborder behind
+plot 'hypotheses.csv' using 'view_deg':'dolp_none' with lines linetype 7, \
+     '' using 'view_deg':'dolp_incidence' with lines linetype 2, \
+     '' using 'view_deg':'dolp_vgroove' with lines linetype 1 linewidth 3, \
+     '' using 'view_deg':'dolp_unshadowed' with lines linetype 4, \
+     '' using 'view_deg':'dolp_smith' with lines linetype 3
+unset multiplot
