@@ -1,0 +1,159 @@
+// The program malus from outside: exit codes, the one line of bad input, files left behind
+// (nw/program/CommandLine.nw, CommandReproduce.nw).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "Program.hpp"
+#include "light/CDTable.hpp"
+
+using namespace malus;
+
+namespace {
+const std::filesystem::path source_data = MALUS_SOURCE_DATA;
+
+/// A copy of the committed validation directory, to be corrupted.
+struct Copy : Scratch {
+  Copy() { std::filesystem::copy(source_data, path / "validation", std::filesystem::copy_options::recursive); }
+  Outcome run(const std::string& arguments) const {
+    return malusIn(path, arguments, "MALUS_DATA=" + (path / "validation").string());
+  }
+};
+
+void replaceIn(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+  std::string text = contents(file);
+  ASSERT_NE(text.find(from), std::string::npos) << file;
+  put(file, text.replace(text.find(from), from.size(), to));
+}
+}  // namespace
+
+TEST(CommandLineIdentity, HelpVersionAndNoArguments) {
+  const Scratch scratch;
+  EXPECT_EQ(malusIn(scratch.path, "--version").out, "malus " MALUS_VERSION "\n");
+  const Outcome help = malusIn(scratch.path, "--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_EQ(malusIn(scratch.path, "").out, help.out);
+  for (const std::string command : {"reproduce", "brdf", "table"}) {
+    EXPECT_NE(help.out.find(command), std::string::npos);
+    const Outcome own = malusIn(scratch.path, command + " --help");
+    EXPECT_EQ(own.code, 0);
+    EXPECT_NE(own.out.find("Examples:\n  malus " + command), std::string::npos) << own.out;
+  }
+}
+
+TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
+  const Scratch scratch;
+  const std::pair<std::string, std::string> cases[] = {
+      {"reprodce", "command line: command = reprodce: is not a command of malus; did you mean reproduce? known are: "
+                   "reproduce, brdf, table\n"},
+      {"reproduce F3.99",
+       "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce --list shows all\n"},
+      {"reproduce F7.44", "command line: ID = F7.44: is not yet built; malus reproduce --list shows what is\n"},
+      {"reproduce --lst",
+       "command line: The following argument was not expected: --lst; malus --help shows what is understood\n"},
+      {"table none.csv", "none.csv: cannot be opened; give the name of a readable CSV file\n"},
+      {"table --seal none.csv", "none.csv: cannot be opened; name a readable CSV file\n"}};
+  for (const auto& [arguments, line] : cases) {
+    const Outcome outcome = malusIn(scratch.path, arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.err, line) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_EQ(filesBelow(scratch.path), 0u) << arguments;
+  }
+}
+
+TEST(CommandLineIdentity, TheDataDirectoryMustBeOne) {
+  const Scratch scratch;
+  const Outcome outcome = malusIn(scratch.path, "reproduce --list", "MALUS_DATA=/no/such/place");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "environment: MALUS_DATA = /no/such/place: is not a directory; name the directory validation "
+                         "of malus's source\n");
+}
+
+TEST(CommandLineIdentity, ATableIsCheckedAndSealed) {
+  const Scratch scratch;
+  put(scratch / "t.csv", "a,b\n1,2\n");
+  EXPECT_EQ(malusIn(scratch.path, "table t.csv").out, "t.csv: 1 rows of a, b\n");
+  EXPECT_EQ(malusIn(scratch.path, "table --seal t.csv").code, 0);
+  EXPECT_NE(contents(scratch / "t.csv").find("# crc32: "), std::string::npos);
+  replaceIn(scratch / "t.csv", "1,2", "1,3");
+  const Outcome outcome = malusIn(scratch.path, "table t.csv");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("t.csv: crc32 = "), std::string::npos) << outcome.err;
+}
+
+// The IDs of the thesis: its tables, the figures from formulas and of scenes, the claims, and our eleven findings.
+TEST(CommandLineIdentity, TheListHoldsEveryId) {
+  std::set<std::string> expected{"T3.1", "T3.2", "T3.3", "T6.1", "E6.1", "T7.1", "T7.2", "T7.3", "T7.4", "T7.5", "A.2",
+                                 "F3.1", "F3.2", "F3.3", "F3.4", "F3.7", "F3.9", "F5.1", "F5.5", "F5.6", "F6.3"};
+  for (int i = 1; i <= 44; ++i) expected.insert(fmt::format("F7.{}", i));
+  for (int i = 1; i <= 7; ++i) expected.insert(fmt::format("C{}", i));
+  for (int i = 1; i <= 11; ++i) expected.insert(fmt::format("N{}", i));
+  const Scratch scratch;
+  std::istringstream lines(malusIn(scratch.path, "reproduce --list").out);
+  std::set<std::string> listed;
+  std::string line;
+  while (std::getline(lines, line)) {
+    const std::string id = line.substr(0, line.find(' '));
+    EXPECT_TRUE(listed.insert(id).second) << id << " is listed twice";
+    EXPECT_TRUE(expected.erase(id) == 1 || id.starts_with("X.")) << id;
+    EXPECT_TRUE(line.find("built") != std::string::npos) << line;
+  }
+  EXPECT_TRUE(expected.empty()) << *expected.begin() << " is not listed";
+  EXPECT_EQ(filesBelow(scratch.path), 0u);
+}
+
+// Regression: what the items say is what we committed after having looked at it.
+TEST(ReproduceRegression, EveryVerdictIsTheCommittedOne) {
+  const Scratch scratch;
+  const Outcome outcome = malusIn(scratch.path, "reproduce --out out");
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(contents(scratch / "out" / "summary.txt"), outcome.out);
+  for (const char* file : {"report.html", "report.json", "values.tex"})
+    EXPECT_NE(contents(scratch / "out" / file), "") << file;
+}
+
+TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
+  const Scratch scratch;
+  const auto report = [&](const std::string& out) {
+    malusIn(scratch.path, "reproduce --out " + out);
+    return contents(scratch / out / "report.html") + contents(scratch / out / "report.json") +
+           contents(scratch / out / "values.tex");
+  };
+  EXPECT_EQ(report("one"), report("two"));
+}
+
+TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
+  const Copy copy;
+  replaceIn(copy / "validation" / "verdicts.csv", "reproduced", "differs");
+  const Outcome outcome = copy.run("reproduce --out out");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("committed differs, now reproduced"), std::string::npos) << outcome.out;
+  EXPECT_EQ(copy.run("reproduce --accept --out out").code, 0);
+  EXPECT_EQ(contents(copy / "validation" / "verdicts.csv"), contents(source_data / "verdicts.csv"));
+}
+
+// The corrupted number is sealed again, so that it is the verdict and not the checksum that notices.
+TEST(ReproduceInvariant, NegativeControlACorruptedPrintedValueMakesTheRunFail) {
+  const Copy copy;
+  const auto printed = copy / "validation" / "printed" / "T7.2.csv";
+  replaceIn(printed, "102.54", "102.55");
+  const Outcome sealed = copy.run("reproduce T7.2 --out out");
+  EXPECT_EQ(sealed.code, 1);
+  EXPECT_NE(sealed.out.find("FAILED T7.2: "), std::string::npos) << sealed.out;
+  EXPECT_EQ(copy.run("table --seal '" + printed.string() + "'").code, 0);
+  const Outcome outcome = copy.run("reproduce T7.2 --out out");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("CHANGED T7.2"), std::string::npos) << outcome.out;
+}
+
+TEST(ReproduceInvariant, JsonOnTheStreamIsTheReport) {
+  const Copy copy;
+  const Outcome outcome = copy.run("reproduce T7.2 --json --out out");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, contents(copy / "out" / "partial.json"));
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["items"][0]["id"], "T7.2");
+  EXPECT_FALSE(std::filesystem::exists(copy / "out" / "values.tex"));
+}
