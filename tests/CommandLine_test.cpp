@@ -118,42 +118,43 @@ TEST(ReproduceRegression, EveryVerdictIsTheCommittedOne) {
 TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
   const Scratch scratch;
   const auto report = [&](const std::string& out) {
-    malusIn(scratch.path, "reproduce --out " + out);
-    return contents(scratch / out / "report.html") + contents(scratch / out / "report.json") +
-           contents(scratch / out / "values.tex");
+    EXPECT_EQ(malusIn(scratch.path, "reproduce T3.1 F3.9 C6 --out " + out).code, 0);
+    return contents(scratch / out / "partial.html") + contents(scratch / out / "partial.json") +
+           contents(scratch / out / "F3.9" / "fresnel.csv");
   };
   EXPECT_EQ(report("one"), report("two"));
 }
 
 TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
   const Copy copy;
-  replaceIn(copy / "validation" / "verdicts.csv", "reproduced", "differs");
-  const Outcome outcome = copy.run("reproduce --out out");
+  replaceIn(copy / "validation" / "verdicts.csv", "T3.1,S1.positive,reproduced", "T3.1,S1.positive,differs");
+  const Outcome outcome = copy.run("reproduce T3.1 --out out");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("committed differs, now reproduced"), std::string::npos) << outcome.out;
-  EXPECT_EQ(copy.run("reproduce --accept --out out").code, 0);
+  EXPECT_NE(outcome.out.find("CHANGED T3.1 S1.positive: committed differs, now reproduced\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(copy.run("reproduce F3.9 --out out").code, 0);  // a partial run looks only at its own items
+  EXPECT_EQ(copy.run("reproduce T3.1 --accept --out out").code, 0);
   EXPECT_EQ(contents(copy / "validation" / "verdicts.csv"), contents(source_data / "verdicts.csv"));
 }
 
-// The corrupted number is sealed again, so that it is the verdict and not the checksum that notices.
+// First the checksum notices; then the corrupted number is sealed, and the verdict notices.
 TEST(ReproduceInvariant, NegativeControlACorruptedPrintedValueMakesTheRunFail) {
   const Copy copy;
-  const auto printed = copy / "validation" / "printed" / "T7.2.csv";
-  replaceIn(printed, "102.54", "102.55");
-  const Outcome sealed = copy.run("reproduce T7.2 --out out");
-  EXPECT_EQ(sealed.code, 1);
-  EXPECT_NE(sealed.out.find("FAILED T7.2: "), std::string::npos) << sealed.out;
+  const auto printed = copy / "validation" / "printed" / "E6.1-radiance.csv";
+  replaceIn(printed, "9.600", "9.700");
+  const Outcome broken_seal = copy.run("reproduce E6.1 --out out");
+  EXPECT_EQ(broken_seal.code, 1);
+  EXPECT_NE(broken_seal.out.find("FAILED E6.1: "), std::string::npos) << broken_seal.out;
   EXPECT_EQ(copy.run("table --seal '" + printed.string() + "'").code, 0);
-  const Outcome outcome = copy.run("reproduce T7.2 --out out");
+  const Outcome outcome = copy.run("reproduce E6.1 --out out");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("CHANGED T7.2"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("CHANGED E6.1"), std::string::npos) << outcome.out;
 }
 
 TEST(ReproduceInvariant, JsonOnTheStreamIsTheReport) {
   const Copy copy;
-  const Outcome outcome = copy.run("reproduce T7.2 --json --out out");
+  const Outcome outcome = copy.run("reproduce T3.1 --json --out out");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, contents(copy / "out" / "partial.json"));
-  EXPECT_EQ(nlohmann::json::parse(outcome.out)["items"][0]["id"], "T7.2");
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["items"][0]["id"], "T3.1");
   EXPECT_FALSE(std::filesystem::exists(copy / "out" / "values.tex"));
 }
