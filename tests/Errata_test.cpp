@@ -13,7 +13,8 @@
 using namespace malus;
 
 namespace {
-CDItem run(const char* id, CDItemFunction function, const std::filesystem::path& data = "validation") {
+CDItem run(const char* id, CDItemFunction function,
+           const std::filesystem::path& data = "validation") {
   CDItem item(id, std::filesystem::temp_directory_path(), data);
   function(item);
   return item;
@@ -54,15 +55,18 @@ std::string chapter() {
 
 TEST(ErrataPublished, EveryFindingIsVerified) {
   const std::map<const char*, CDItemFunction> findings{
-      {"N1", reproduceN1}, {"N2", reproduceN2}, {"N3", reproduceN3}, {"N4", reproduceN4},   {"N5", reproduceN5},
-      {"N6", reproduceN6}, {"N7", reproduceN7}, {"N9", reproduceN9}, {"N10", reproduceN10}, {"N11", reproduceN11}};
+      {"N1", reproduceN1},   {"N2", reproduceN2},  {"N3", reproduceN3}, {"N4", reproduceN4},
+      {"N5", reproduceN5},   {"N6", reproduceN6},  {"N7", reproduceN7}, {"N9", reproduceN9},
+      {"N10", reproduceN10}, {"N11", reproduceN11}};
   for (const auto& [id, function] : findings) EXPECT_EQ(differing(run(id, function)), 0) << id;
 }
 
 TEST(ErrataPublished, TheListHoldsAllCommittedErrataAndNoOthers) {
   const std::set<std::string> committed = committedErrata(), listed = listedErrata(chapter());
-  for (const std::string& erratum : committed) EXPECT_TRUE(listed.contains(erratum)) << erratum << " is not listed";
-  for (const std::string& erratum : listed) EXPECT_TRUE(committed.contains(erratum)) << erratum << " has no proof";
+  for (const std::string& erratum : committed)
+    EXPECT_TRUE(listed.contains(erratum)) << erratum << " is not listed";
+  for (const std::string& erratum : listed)
+    EXPECT_TRUE(committed.contains(erratum)) << erratum << " has no proof";
 }
 
 TEST(ErrataPublished, NegativeControlAnInventedErratumIsSeen) {

@@ -13,7 +13,8 @@ using namespace malus;
 namespace {
 // Golden section stops where values no longer differ: sqrt(epsilon) times the width of the peak.
 constexpr double peak_tolerance = 1e-6;
-constexpr double root_tolerance = 1e-9;  // halving; limited by the peak's height, which is relative 1e-16
+constexpr double root_tolerance =
+    1e-9;  // halving; limited by the peak's height, which is relative 1e-16
 
 CDCurve gaussian(double centre, double sigma) {
   return [=](double x) { return 3.0 * std::exp(-0.5 * std::pow((x - centre) / sigma, 2)); };
@@ -50,12 +51,14 @@ TEST(MeasurementsIdentity, LocalMaximaOfASine) {
   const auto maxima = localMaxima([](double x) { return std::sin(x); }, 0, 20);
   ASSERT_EQ(maxima.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(maxima[i].x, std::numbers::pi * (0.5 + 2.0 * static_cast<double>(i)), peak_tolerance);
+    EXPECT_NEAR(maxima[i].x, std::numbers::pi * (0.5 + 2.0 * static_cast<double>(i)),
+                peak_tolerance);
   EXPECT_TRUE(localMaxima([](double x) { return x * x; }, -1, 1).empty());
 }
 
 TEST(MeasurementsIdentity, RootOfACosineAndRefusal) {
-  EXPECT_NEAR(findRoot([](double x) { return std::cos(x); }, 0, 3), std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(findRoot([](double x) { return std::cos(x); }, 0, 3), std::numbers::pi / 2,
+              1e-15);
   EXPECT_THROW(findRoot([](double) { return 1.0; }, 0, 1), CDMathError);
 }
 

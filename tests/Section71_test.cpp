@@ -17,8 +17,8 @@ CDTable printed(const std::string& name) {
 }
 
 // The matrix of eq 7.8 typed from the thesis, with the sign of f33 that its table 7.1 needs.
-const CDMuellerMatrix paper(std::array<double, 16>{1.18, 0.04, 0, 0, 0.04, 1.172, 0, 0, 0, 0, -1.131,
-                                                   0.3026, 0, 0, -0.3026, -1.131});
+const CDMuellerMatrix paper(std::array<double, 16>{1.18, 0.04, 0, 0, 0.04, 1.172, 0, 0, 0, 0,
+                                                   -1.131, 0.3026, 0, 0, -0.3026, -1.131});
 constexpr double cos30 = 0.86602540378443865;
 
 /// How often an item's verdict of this kind was given.
@@ -43,7 +43,8 @@ TEST(Section71Published, OurMatrixRoundsToThePaperMatrix) {
 }
 
 TEST(Section71Published, FacetTermOfFindingOne) {
-  const CDMuellerMatrix f = copperPlateBRDF(CDDiffuseTerm::none);  // numbers of finding 1, six digits
+  const CDMuellerMatrix f =
+      copperPlateBRDF(CDDiffuseTerm::none);  // numbers of finding 1, six digits
   EXPECT_NEAR(f.getMueller(0, 0), 1.17187, 5e-6);
   EXPECT_NEAR(f.getMueller(0, 1), 0.040058, 5e-7);
   EXPECT_NEAR(f.getMueller(3, 3), -1.131418, 5e-7);
@@ -79,9 +80,13 @@ TEST(Section71Identity, ErrorColumnsMendAPlantedMisprint) {
 }
 
 TEST(Section71Published, EveryPrintedNumberIsMetOrIsAnErratum) {
-  struct { const char* id; CDItemFunction function; long errata; } const items[] = {
-      {"T7.1", reproduceT71, 1}, {"T7.2", reproduceT72, 1}, {"T7.3", reproduceT73, 1},
-      {"T7.4", reproduceT74, 11}, {"C1", reproduceC1, 1}, {"C2", reproduceC2, 1}};
+  struct {
+    const char* id;
+    CDItemFunction function;
+    long errata;
+  } const items[] = {{"T7.1", reproduceT71, 1}, {"T7.2", reproduceT72, 1},
+                     {"T7.3", reproduceT73, 1}, {"T7.4", reproduceT74, 11},
+                     {"C1", reproduceC1, 1},    {"C2", reproduceC2, 1}};
   for (const auto& [id, function, errata] : items) {
     const CDItem item = run(id, function);
     EXPECT_EQ(verdicts(item, CDVerdict::differs), 0) << id;

@@ -33,8 +33,8 @@ CDItem run(const char* id, CDItemFunction function) {
 
 TEST(Section72Published, DirectEvaluationOfTheCopperPlate) {
   const CDMuellerMatrix f =
-      directBRDF(CDVector::fromAngles(30 * degree, 0), CDVector::fromAngles(40 * degree, std::numbers::pi),
-                 0.405, 2.950, 0.2);
+      directBRDF(CDVector::fromAngles(30 * degree, 0),
+                 CDVector::fromAngles(40 * degree, std::numbers::pi), 0.405, 2.950, 0.2);
   EXPECT_NEAR(f.getMueller(0, 0), 1.17187, 5e-6);  // digits of finding 1
   EXPECT_NEAR(f.getMueller(1, 0), 0.040058, 5e-7);
   EXPECT_NEAR(f.getMueller(2, 2), -1.131418, 5e-7);
@@ -44,11 +44,12 @@ TEST(Section72Published, DirectEvaluationOfTheCopperPlate) {
 
 RC_GTEST_PROP(Section72Identity, ModelAgreesWithDirectEvaluation, ()) {
   const double theta_i = drawn(1, 85) * degree, theta_r = drawn(1, 85) * degree;
-  const double phi = drawn(0, 360) * degree, n = drawn(0.1, 3), k = drawn(0, 8), sigma = drawn(0.1, 0.6);
+  const double phi = drawn(0, 360) * degree, n = drawn(0.1, 3), k = drawn(0, 8),
+               sigma = drawn(0.1, 0.6);
   const BRDFTorranceSparrow model(n, k, sigma, {CDShadowing::vGroove, CDDiffuseTerm::none});
   const CDMuellerMatrix ours = model.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi));
-  const CDMuellerMatrix direct =
-      directBRDF(CDVector::fromAngles(theta_i, 0), CDVector::fromAngles(theta_r, phi), n, k, sigma);
+  const CDMuellerMatrix direct = directBRDF(CDVector::fromAngles(theta_i, 0),
+                                            CDVector::fromAngles(theta_r, phi), n, k, sigma);
   RC_PRE(direct.getMueller(0, 0) > 1e-200);
   // acos of a cosine near 1, and near-parallel rays, cost the direct evaluation half of its digits
   RC_ASSERT(apart(ours, direct) < 1e-6);
@@ -56,23 +57,31 @@ RC_GTEST_PROP(Section72Identity, ModelAgreesWithDirectEvaluation, ()) {
 
 TEST(Section72Identity, NegativeControlThirdDigitOfTheIndexIsSeen) {
   const auto geometry = CDBRDFGeometry::fromDegrees(30, 40, 120);
-  const BRDFTorranceSparrow model(0.406, 2.95, 0.2, {CDShadowing::vGroove, CDDiffuseTerm::none});
-  EXPECT_GT(apart(model.at(geometry), directBRDF(CDVector::fromAngles(30 * degree, 0),
-                                                 CDVector::fromAngles(40 * degree, 120 * degree), 0.405,
-                                                 2.95, 0.2)),
-            1e-6);
+  const BRDFTorranceSparrow model(0.406, 2.95, 0.2,
+                                  {CDShadowing::vGroove, CDDiffuseTerm::none});
+  EXPECT_GT(
+      apart(model.at(geometry),
+            directBRDF(CDVector::fromAngles(30 * degree, 0),
+                       CDVector::fromAngles(40 * degree, 120 * degree), 0.405, 2.95, 0.2)),
+      1e-6);
 }
 
 TEST(Section72Identity, CurvesRunFromBackwardToForward) {
   const BRDFTorranceSparrow brdf(1.5, 0, 0.1);
-  EXPECT_EQ(inPlane(brdf, 30)(20), brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 180)).getMueller(0, 0));
-  EXPECT_EQ(inPlane(brdf, 30)(-20), brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 0)).getMueller(0, 0));
+  EXPECT_EQ(inPlane(brdf, 30)(20),
+            brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 180)).getMueller(0, 0));
+  EXPECT_EQ(inPlane(brdf, 30)(-20),
+            brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 0)).getMueller(0, 0));
   EXPECT_GT(inPlane(brdf, 30)(30), inPlane(brdf, 30)(-30));
 }
 
 TEST(Section72Published, WhatDiffersIsWhatTheChapterTells) {
   // sec 7.3.1, linear shift: fails for sigma .15, .2, .3; sec 7.3.2: widths at half maximum, and one forward peak
-  struct { const char* id; CDItemFunction function; long differs; } const items[] = {
+  struct {
+    const char* id;
+    CDItemFunction function;
+    long differs;
+  } const items[] = {
       {"F7.2", reproduceF72, 0}, {"F7.3", reproduceF73, 0},   {"F7.4", reproduceF74, 0},
       {"F7.5", reproduceF75, 0}, {"F7.6", reproduceF76, 3},   {"F7.7", reproduceF77, 3},
       {"F7.8", reproduceF78, 1}, {"F7.10", reproduceF710, 0}, {"F7.11", reproduceF711, 0},
