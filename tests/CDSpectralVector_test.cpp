@@ -510,7 +510,7 @@ TEST(CDSpectralVectorIdentity, ForbiddenOperations) {
   Scalars v(grid, {1, 2, 3});
   EXPECT_THROW(v / 0.0, CDMathError);
   EXPECT_THROW(v / -0.0, CDMathError);
-  EXPECT_THROW(v / 1e-320, CDMathError);  // has no finite reciprocal
+  EXPECT_THROW(Stokes(grid) / 0.0, CDMathError);
   EXPECT_THROW(v.at(3), std::out_of_range);
   EXPECT_THROW(Stokes(grid).at(3), std::out_of_range);
   EXPECT_THROW(std::as_const(v).at(17), std::out_of_range);
@@ -519,6 +519,34 @@ TEST(CDSpectralVectorIdentity, ForbiddenOperations) {
   EXPECT_THROW(Scalars(nullptr), CDGridError);
   EXPECT_THROW(v.resampled(nullptr), CDGridError);
   EXPECT_EQ(v.at(2), 3);
+}
+
+// A quotient is rounded once. No tolerance: the reference is the division of single values.
+TEST(CDSpectralVectorIdentity, AQuotientIsThatOfEachBand) {
+  const auto grid = gridOf(9);
+  Scalars v(grid);
+  Stokes s(grid);
+  CDSpectralVector<CDMuellerMatrix> m(grid);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double x = static_cast<double>(i) + 1;
+    v[i] = x;
+    s[i] = i % 3 ? CDStokesVector(x, x / 2, -3, .5) : CDStokesVector(x);
+    m[i] = i % 2 ? CDMuellerMatrix(x) * rotationMatrix(x) : CDMuellerMatrix(x);
+  }
+  int reciprocal_differs = 0;
+  for (const double x : {3.0, 7.0, -49.0, 0.1, 1e300, 1e-320}) {
+    const auto v_x = v / x;
+    const auto s_x = s / x;
+    const auto m_x = m / x;
+    for (std::size_t i = 0; i < 9; ++i) {
+      EXPECT_EQ(v_x[i], v[i] / x);
+      EXPECT_EQ(s_x[i], std::as_const(s)[i] / x);
+      EXPECT_EQ(m_x[i], std::as_const(m)[i] / x);
+      EXPECT_EQ(s_x.isPolarized(i), s.isPolarized(i));
+      reciprocal_differs += v_x[i] != v[i] * (1 / x);
+    }
+  }
+  EXPECT_GT(reciprocal_differs, 0);  // negative control: a reciprocal would be noticed
 }
 
 // ---------------------------------------------------------------------------------- between
@@ -636,6 +664,7 @@ TEST(CDSpectralVectorIdentity, AnyTypeWithTheArithmetic) {
   EXPECT_EQ((v + v)[0], (Colour{2, 4}));
   EXPECT_EQ((v - v)[1], Colour{});
   EXPECT_EQ((v * 0.5)[1], (Colour{0, 2}));
+  EXPECT_EQ((v / 2.0)[1], (Colour{0, 2}));  // has no quotient of its own
   EXPECT_EQ((v * Scalars(grid, {2, 3}))[1], (Colour{0, 12}));
   EXPECT_EQ(v.interpolate(500), (Colour{0.5, 3}));
 
