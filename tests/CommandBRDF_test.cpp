@@ -171,7 +171,7 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
     EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model).code, 0);
   }
   EXPECT_NE(malusIn(scratch.path, "brdf --describe torrance-sparrow")
-                .out.find("sigma        roughness, standard deviation of the facet slopes [rad]: above 0"),
+                .out.find("sigma        roughness, standard deviation of the facet slopes [rad]: 1e-06 to 10"),
             std::string::npos);
 }
 
@@ -205,6 +205,16 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
   EXPECT_NE(column.number(0, "f00"), column.number(1, "f00"));
 }
 
+// A file made for BRDFs serves for --dhr too: its other angles pass through.
+TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
+  const Scratch scratch;
+  put(scratch / "q.csv", "theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n0,40,180\n");
+  const CDTable file = answer(scratch, copper + "--dhr --geometries q.csv");
+  EXPECT_EQ(file.text("theta_r_deg"), (std::vector<std::string>{"40", "40"}));
+  EXPECT_EQ(file.number(0, "dhr"), answer(scratch, copper + "--dhr --theta-i 30 --format csv").number(0, "dhr"));
+  EXPECT_NE(file.number(0, "dhr"), file.number(1, "dhr"));
+}
+
 // Without shadowing the BRDF has no bound at the horizon (chapter BRDFTorranceSparrow); a table cannot hold that.
 TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
@@ -236,9 +246,20 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
   const std::string angles = " --theta-i 30 --theta-r 40 --phi 180 --out a.csv";
   const std::pair<std::string, std::string> cases[] = {
       {flags + "--param sigma=-1" + angles,
-       "command line: --param sigma = -1 rad: must be above 0; give roughness, standard deviation of the facet slopes (above 0)"},
+       "command line: --param sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)"},
       {flags + "--param sigma=0" + angles,
-       "command line: --param sigma = 0 rad: must be above 0; give roughness, standard deviation of the facet slopes (above 0)"},
+       "command line: --param sigma = 0 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)"},
+      {flags + "--param sigma=1e200" + angles,
+       "command line: --param sigma = 1e200 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes "
+       "(1e-06 to 10)"},
+      {"brdf --model torrance-sparrow --param n=0 --param k=1 --param sigma=0.2" + angles,
+       "command line: --param n = 0: must be above 0, up to 1e+06; give real part of the index of refraction n + ik (above 0, up to 1e+06)"},
+      {"brdf --model torrance-sparrow --param n=1 --param k=-2 --param sigma=0.2" + angles,
+       "command line: --param k = -2: must be 0 to 1e+06; give imaginary part of the index, 0 for a dielectric (0 to 1e+06)"},
+      {copper + "--theta-i 30 --sample -5", "command line: --sample = -5: is not a whole number from 1 to 4294967295; give e.g. 1000"},
+      {copper + "--theta-i 30 --sample 5 --seed x",
+       "command line: --seed = x: is not a whole number from 0 to 4294967295; give e.g. 1000"},
+      {plate + "--out ''", "command line: --out: must name a file; malus --help shows what is understood"},
       {flags + "--param sigma=nan" + angles,
        "command line: --param sigma = nan: is not a finite number; write a number such as 0.2"},
       {flags + "--param sigma=0,2" + angles,
@@ -248,7 +269,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
        "shadowing, diffuse"},
       {flags + angles,
        "command line: --param sigma: is missing for torrance-sparrow; give roughness, standard deviation of the facet slopes "
-       "(above 0)"},
+       "(1e-06 to 10)"},
       {flags + "--param sigma" + angles, "command line: --param = sigma: has no name and value; write --param sigma=0.2"},
       {flags + "--param n=1 --param sigma=0.2" + angles, "command line: --param n = 1: is given twice; give it once"},
       {flags + "--param sigma=0.2 --param shadowing=vgroove" + angles,
@@ -326,7 +347,7 @@ TEST(CommandBRDFIdentity, AParameterInATableIsCheckedWithItsLine) {
       malusIn(scratch.path, "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --geometries q.csv --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
-            "q.csv:3: sigma = -1 rad: must be above 0; give roughness, standard deviation of the facet slopes (above 0)\n");
+            "q.csv:3: sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)\n");
   EXPECT_EQ(filesBelow(scratch.path), 1u);
 }
 
