@@ -1,0 +1,43 @@
+// The item that draws what spectra do (nw/thesis/OwnSpectra.nw).
+#include "thesis/OwnSpectra.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "program/Harness.hpp"
+
+using namespace malus;
+
+namespace {
+const CDItem& measured() {
+  static const CDItem item = [] {
+    CDItem run("X.spectra", "nowhere", "validation");
+    reproduceXSpectra(run);
+    return run;
+  }();
+  return item;
+}
+}  // namespace
+
+TEST(OwnSpectraInvariant, AllClaimsHoldAndAllPicturesAreDrawn) {
+  std::map<std::string, CDVerdict> verdicts;
+  for (const CDClaim& claim : measured().claims()) verdicts[claim.name] = claim.verdict;
+  const std::map<std::string, CDVerdict> expected{{"integral", CDVerdict::reproduced},
+                                                  {"peaks", CDVerdict::reproduced},
+                                                  {"bands", CDVerdict::reproduced},
+                                                  {"policies", CDVerdict::reproduced}};
+  EXPECT_EQ(verdicts, expected);
+  EXPECT_EQ(measured().pictures().size(), 3u);
+}
+
+TEST(OwnSpectraRegression, ValuesThatTheProseRestsOn) {
+  std::map<std::string, std::string> values;
+  for (const auto& [name, text] : measured().values()) values[name] = text;
+  EXPECT_EQ(values["narrow"], "1.0000");
+  EXPECT_EQ(values["rectangular"], "0.9500");
+  EXPECT_EQ(values["peak.nm"], "500");  // between blue and green
+  EXPECT_GT(std::stod(values["peak.eV"]), 780);  // beyond what an eye sees
+  EXPECT_NE(values["gaussian"], values["tabulated"]);  // negative control
+}
