@@ -33,7 +33,8 @@ std::string complaint(const std::string& text, const std::string& column = "") {
 }
 
 const std::string copper =
-    "# title: Copper\n# source: a handbook,\n#   page 12-95\nwavelength_nm,n,k\n590.40,0.47,2.81\n619.92,.27,3.24\n";
+    "# title: Copper\n# source: a handbook,\n#   page "
+    "12-95\nwavelength_nm,n,k\n590.40,0.47,2.81\n619.92,.27,3.24\n";
 }  // namespace
 
 TEST(CDTableIdentity, ReadsHeaderColumnsAndRows) {
@@ -51,7 +52,8 @@ TEST(CDTableIdentity, ReadsHeaderColumnsAndRows) {
 }
 
 TEST(CDTableIdentity, CarriageReturnsByteOrderMarkBlanksAndQuotesAreTolerated) {
-  const CDTable table = parsed("\xEF\xBB\xBF# title: x\r\na , \"b, c\"\r\n\r\n +1 ,\"say \"\"no\"\"\" \r\n");
+  const CDTable table =
+      parsed("\xEF\xBB\xBF# title: x\r\na , \"b, c\"\r\n\r\n +1 ,\"say \"\"no\"\"\" \r\n");
   EXPECT_EQ(table.columns(), (std::vector<std::string>{"a", "b, c"}));
   EXPECT_EQ(table.number(0, "a"), 1.0);
   EXPECT_EQ(table.cell(0, "b, c"), "say \"no\"");
@@ -60,7 +62,8 @@ TEST(CDTableIdentity, CarriageReturnsByteOrderMarkBlanksAndQuotesAreTolerated) {
 
 TEST(CDTableIdentity, AnEmptyLastCellIsACell) {
   EXPECT_EQ(parsed("a,b\n1,\n").cell(0, "b"), "");
-  EXPECT_EQ(complaint("a,b\n1,\n", "b"), "t.csv:2: b: the number is missing; write a number such as 0.2");
+  EXPECT_EQ(complaint("a,b\n1,\n", "b"),
+            "t.csv:2: b: the number is missing; write a number such as 0.2");
 }
 
 TEST(CDTableIdentity, AFaultIsNamedByLineAndColumn) {
@@ -72,17 +75,23 @@ TEST(CDTableIdentity, AFaultIsNamedByLineAndColumn) {
             "t.csv:2: a = 1e999: is beyond the range of a double; stay within 1e-307..1e308");
   EXPECT_EQ(complaint("a,b\n1,2,3\n"),
             "t.csv:2: 3 cells: but line 1 names 2 columns; give one cell for each column");
-  EXPECT_EQ(complaint("a,,c\n"),
-            "t.csv:1: column 2 has no name; name every column, with its unit, e.g. theta_i_deg");
-  EXPECT_EQ(complaint("a,b,a\n"), "t.csv:1: a: names two columns; give each column its own name");
-  EXPECT_EQ(complaint("a\n\"1\n"), "t.csv:2: \"1: has no closing quote; close the quote in the same line");
-  EXPECT_EQ(complaint("a\n\"1\"2\n"),
-            "t.csv:2: 1: is followed by text after its closing quote; write a quote inside quotes "
-            "twice, and a comma between cells");
+  EXPECT_EQ(
+      complaint("a,,c\n"),
+      "t.csv:1: column 2 has no name; name every column, with its unit, e.g. theta_i_deg");
+  EXPECT_EQ(complaint("a,b,a\n"),
+            "t.csv:1: a: names two columns; give each column its own name");
+  EXPECT_EQ(complaint("a\n\"1\n"),
+            "t.csv:2: \"1: has no closing quote; close the quote in the same line");
+  EXPECT_EQ(
+      complaint("a\n\"1\"2\n"),
+      "t.csv:2: 1: is followed by text after its closing quote; write a quote inside quotes "
+      "twice, and a comma between cells");
   EXPECT_EQ(complaint("# title: nothing\n"),
-            "t.csv: holds no line of column names; begin with a line such as theta_i_deg,theta_r_deg,phi_deg");
+            "t.csv: holds no line of column names; begin with a line such as "
+            "theta_i_deg,theta_r_deg,phi_deg");
   EXPECT_EQ(complaint("theta_deg,n\n1,2\n", "teta_deg"),
-            "t.csv:1: teta_deg: is not among the columns; did you mean theta_deg? known are: theta_deg, n");
+            "t.csv:1: teta_deg: is not among the columns; did you mean theta_deg? known are: "
+            "theta_deg, n");
 }
 
 TEST(CDTableIdentity, AMissingFileAndADirectoryCannotBeOpened) {
@@ -143,7 +152,8 @@ RC_GTEST_PROP(CDTableInvariant, EveryDoubleComesBackBitForBit, ()) {
 }
 
 RC_GTEST_PROP(CDTableInvariant, EveryTextOfOneLineComesBack, ()) {
-  const auto text = *rc::gen::container<std::string>(rc::gen::elementOf(std::string("a ,\"#;x")));
+  const auto text =
+      *rc::gen::container<std::string>(rc::gen::elementOf(std::string("a ,\"#;x")));
   CDTableWriter writer({"a", "b"});
   writer.row({text, 1});
   RC_ASSERT(parsed(writer.text()).cell(0, "a") == text);
@@ -160,7 +170,8 @@ TEST(CDTableIdentity, TheWriterChecksWidthAndMixesNumbersAndText) {
 }
 
 TEST(CDTableInvariant, AFileIsWrittenWholeOrNotAtAll) {
-  const auto directory = std::filesystem::temp_directory_path() / ("CDTable_test" + std::to_string(::getpid()));
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("CDTable_test" + std::to_string(::getpid()));
   CDTableWriter writer({"a"});
   writer.row({1.0}).save(directory / "deep" / "t.csv");
   EXPECT_EQ(CDTable::read(directory / "deep" / "t.csv").number(0, "a"), 1.0);

@@ -15,7 +15,8 @@
 using namespace malus;
 
 namespace {
-const std::string copper = "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --param sigma=0.2 ";
+const std::string copper =
+    "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --param sigma=0.2 ";
 const std::string plate = copper + "--theta-i 30 --theta-r 40 --phi 180 ";
 
 CDTable table(const std::string& text) {
@@ -31,7 +32,8 @@ CDTable answer(const Scratch& scratch, const std::string& arguments) {
 
 /// Random geometries with their own parameters; the numbers need all their digits.
 std::string someGeometries(bool with_parameters) {
-  std::string text = with_parameters ? "label,theta_i_deg,n,theta_r_deg,phi_deg,k,sigma\n" : "theta_i_deg,theta_r_deg,phi_deg\n";
+  std::string text = with_parameters ? "label,theta_i_deg,n,theta_r_deg,phi_deg,k,sigma\n"
+                                     : "theta_i_deg,theta_r_deg,phi_deg\n";
   std::uint64_t state = 1;
   const auto uniform = [&] {  // Knuth's MMIX generator: any spread of numbers will do
     state = state * 6364136223846793005u + 1442695040888963407u;
@@ -41,14 +43,17 @@ std::string someGeometries(bool with_parameters) {
     const double i = 90 * uniform(), r = 90 * uniform(), phi = 720 * uniform() - 360;
     const double n = 0.1 + 2 * uniform(), k = 4 * uniform(), sigma = 0.05 + 0.4 * uniform();
     if (with_parameters)
-      text += fmt::format("\"a, {}\",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", row, i, n, r, phi, k, sigma);
+      text += fmt::format("\"a, {}\",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", row, i,
+                          n, r, phi, k, sigma);
     else
       text += fmt::format("{:.17g},{:.17g},{:.17g}\n", i, r, phi);
   }
   return text;
 }
 
-bool sameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+bool sameBits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 }  // namespace
 
 // Finding 1 of the inventory gives the specular part to the digits below; the diffuse term of finding 3 is
@@ -72,7 +77,9 @@ TEST(CommandBRDFPublished, TheCopperPlateOfSection71) {
 
 TEST(CommandBRDFPublished, NegativeControlOneDegreeMoreMissesThem) {
   const Scratch scratch;
-  const CDTable off = answer(scratch, copper + "--theta-i 31 --theta-r 40 --phi 180 --format csv --param diffuse=none");
+  const CDTable off =
+      answer(scratch,
+             copper + "--theta-i 31 --theta-r 40 --phi 180 --format csv --param diffuse=none");
   EXPECT_GT(std::abs(off.number(0, "f00") - 1.17187), 5e-6);
 }
 
@@ -80,8 +87,11 @@ TEST(CommandBRDFIdentity, TextShowsTheMatrixAndWhatUnpolarisedLightBecomes) {
   const Scratch scratch;
   const Outcome outcome = malusIn(scratch.path, plate);
   EXPECT_EQ(outcome.code, 0);
-  for (const char* words : {"torrance-sparrow at 550 nm", "n = 0.405, k = 2.950, sigma = 0.2, shadowing = v-groove, diffuse = thesis", "theta_r_deg = 40", "Mueller BRDF [1/sr]", "1.1803",
-                            "0.04005", "-1.13141", "0.30261", "unpolarised light: DoP 0.0339"})
+  for (const char* words :
+       {"torrance-sparrow at 550 nm",
+        "n = 0.405, k = 2.950, sigma = 0.2, shadowing = v-groove, diffuse = thesis",
+        "theta_r_deg = 40", "Mueller BRDF [1/sr]", "1.1803", "0.04005", "-1.13141", "0.30261",
+        "unpolarised light: DoP 0.0339"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
   EXPECT_EQ(outcome.out.find("-0 "), std::string::npos) << outcome.out;
 }
@@ -91,7 +101,8 @@ TEST(CommandBRDFInvariant, CsvAndJsonAndTheLibraryGiveTheSameBits) {
   const CDTable csv = answer(scratch, plate + "--format csv");
   const auto json = nlohmann::json::parse(malusIn(scratch.path, plate + "--format json").out);
   const auto& matrix = json["geometries"][0]["mueller_per_sr"];
-  const CDMuellerMatrix f = BRDFTorranceSparrow(0.405, 2.950, 0.2).at(CDBRDFGeometry::fromDegrees(30, 40, 180));
+  const CDMuellerMatrix f =
+      BRDFTorranceSparrow(0.405, 2.950, 0.2).at(CDBRDFGeometry::fromDegrees(30, 40, 180));
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) {
       const double ours = csv.number(0, fmt::format("f{}{}", i, j));
@@ -108,17 +119,24 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
   const Scratch scratch;
   const std::string question = someGeometries(true);
   put(scratch / "q.csv", question);
-  EXPECT_EQ(malusIn(scratch.path, "brdf --model torrance-sparrow --geometries q.csv --out a.csv").code, 0);
+  EXPECT_EQ(
+      malusIn(scratch.path, "brdf --model torrance-sparrow --geometries q.csv --out a.csv")
+          .code,
+      0);
   const CDTable asked = table(question), answered = CDTable::read(scratch / "a.csv");
   ASSERT_EQ(answered.rows(), asked.rows());
   ASSERT_EQ(answered.columns().size(), asked.columns().size() + 16);
-  for (const std::string& column : asked.columns()) EXPECT_EQ(answered.text(column), asked.text(column)) << column;
+  for (const std::string& column : asked.columns())
+    EXPECT_EQ(answered.text(column), asked.text(column)) << column;
   for (std::size_t row = 0; row < asked.rows(); row += 37) {
-    const BRDFTorranceSparrow model(asked.number(row, "n"), asked.number(row, "k"), asked.number(row, "sigma"));
+    const BRDFTorranceSparrow model(asked.number(row, "n"), asked.number(row, "k"),
+                                    asked.number(row, "sigma"));
     const CDMuellerMatrix f = model.at(CDBRDFGeometry::fromDegrees(
-        asked.number(row, "theta_i_deg"), asked.number(row, "theta_r_deg"), asked.number(row, "phi_deg")));
+        asked.number(row, "theta_i_deg"), asked.number(row, "theta_r_deg"),
+        asked.number(row, "phi_deg")));
     for (int k = 0; k < 16; ++k)
-      EXPECT_TRUE(sameBits(answered.number(row, fmt::format("f{}{}", k / 4, k % 4)), f.getMueller(k / 4, k % 4)));
+      EXPECT_TRUE(sameBits(answered.number(row, fmt::format("f{}{}", k / 4, k % 4)),
+                           f.getMueller(k / 4, k % 4)));
   }
 }
 
@@ -132,11 +150,15 @@ TEST(CommandBRDFInvariant, StandardOutputIsTheFileThatOutWrites) {
 
 TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
   const Scratch scratch;
-  const CDTable f = answer(scratch, "brdf --model lambertian --param reflectance=0.5 --param s=0.25 --theta-i 10 --theta-r 20 --phi 0 --format csv");
+  const CDTable f = answer(scratch,
+                           "brdf --model lambertian --param reflectance=0.5 --param s=0.25 "
+                           "--theta-i 10 --theta-r 20 --phi 0 --format csv");
   EXPECT_DOUBLE_EQ(f.number(0, "f00"), 0.5 / M_PI);
   EXPECT_DOUBLE_EQ(f.number(0, "f33"), 0.125 / M_PI);
   EXPECT_EQ(f.number(0, "f01"), 0);
-  const CDTable dhr = answer(scratch, "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i 60 --format csv");
+  const CDTable dhr =
+      answer(scratch,
+             "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i 60 --format csv");
   EXPECT_NEAR(dhr.number(0, "dhr"), 0.5, 1e-12);  // rounding of pi * (1/pi)
 }
 
@@ -144,13 +166,15 @@ TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
 // which a correct sampler exceeds in fewer than one of a million seeds; the seed is fixed.
 TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
   const Scratch scratch;
-  const std::string model = "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i 50 ";
+  const std::string model =
+      "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i 50 ";
   const CDTable samples = answer(scratch, model + "--sample 20000 --seed 7");
   const double draws = std::stod(samples.header("draws"));
   EXPECT_EQ(static_cast<double>(samples.rows()) + std::stod(samples.header("rejected")), draws);
   double sum = 0, squares = 0;
   for (std::size_t row = 0; row < samples.rows(); ++row) {
-    const double weight = samples.number(row, "f00_per_sr") * std::cos(samples.number(row, "theta_r_deg") * M_PI / 180) /
+    const double weight = samples.number(row, "f00_per_sr") *
+                          std::cos(samples.number(row, "theta_r_deg") * M_PI / 180) /
                           samples.number(row, "density_per_sr");
     sum += weight;
     squares += weight * weight;
@@ -158,7 +182,9 @@ TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
   const double mean = sum / draws, error = std::sqrt((squares / draws - mean * mean) / draws);
   EXPECT_NEAR(mean, answer(scratch, model + "--dhr --format csv").number(0, "dhr"), 5 * error);
   EXPECT_GT(error, 0);
-  const auto out = [&](const std::string& seed) { return malusIn(scratch.path, model + "--sample 5 --seed " + seed).out; };
+  const auto out = [&](const std::string& seed) {
+    return malusIn(scratch.path, model + "--sample 5 --seed " + seed).out;
+  };
   EXPECT_EQ(out("7"), out("7"));
   EXPECT_NE(out("7"), out("8"));
 }
@@ -171,7 +197,8 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
     EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model).code, 0);
   }
   EXPECT_NE(malusIn(scratch.path, "brdf --describe torrance-sparrow")
-                .out.find("sigma        roughness, standard deviation of the facet slopes [rad]: 1e-06 to 10"),
+                .out.find("sigma        roughness, standard deviation of the facet slopes "
+                          "[rad]: 1e-06 to 10"),
             std::string::npos);
 }
 
@@ -180,7 +207,9 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
 TEST(CommandBRDFIdentity, TheHorizonIsTheLimit) {
   const Scratch scratch;
   const auto f00 = [&](const std::string& theta_r) {
-    return answer(scratch, copper + "--theta-i 30 --theta-r " + theta_r + " --phi 180 --format csv").number(0, "f00");
+    return answer(scratch,
+                  copper + "--theta-i 30 --theta-r " + theta_r + " --phi 180 --format csv")
+        .number(0, "f00");
   };
   EXPECT_GT(f00("90"), 0.05);
   EXPECT_NEAR(f00("90"), f00("89.9999999"), 1e-7);
@@ -190,15 +219,19 @@ TEST(CommandBRDFIdentity, TheHorizonIsTheLimit) {
 // A parameter in a column is the parameter of a flag, to the last bit, in whatever order the rows come; words too.
 TEST(CommandBRDFInvariant, AColumnIsAFlag) {
   const Scratch scratch;
-  const std::string sigmas[] = {"0.2", "0.31", "0.2", "0.7", "0.0021"}, words[] = {"smith", "v-groove", "none", "v-groove", "smith"};
+  const std::string sigmas[] = {"0.2", "0.31", "0.2", "0.7", "0.0021"},
+                    words[] = {"smith", "v-groove", "none", "v-groove", "smith"};
   std::string question = "theta_i_deg,theta_r_deg,phi_deg,sigma,shadowing\n";
   for (int i = 0; i < 5; ++i) question += "70,60,175," + sigmas[i] + "," + words[i] + "\n";
   put(scratch / "q.csv", question);
-  const std::string copper_only = "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
+  const std::string copper_only =
+      "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
   const CDTable column = answer(scratch, copper_only + "--geometries q.csv");
   for (int i = 0; i < 5; ++i) {
-    const CDTable flag = answer(scratch, copper_only + "--theta-i 70 --theta-r 60 --phi 175 --format csv --param sigma=" +
-                                             sigmas[i] + " --param shadowing=" + words[i]);
+    const CDTable flag =
+        answer(scratch, copper_only +
+                            "--theta-i 70 --theta-r 60 --phi 175 --format csv --param sigma=" +
+                            sigmas[i] + " --param shadowing=" + words[i]);
     EXPECT_TRUE(sameBits(column.number(i, "f00"), flag.number(0, "f00"))) << i;
     EXPECT_TRUE(sameBits(column.number(i, "f23"), flag.number(0, "f23"))) << i;
   }
@@ -211,17 +244,21 @@ TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
   put(scratch / "q.csv", "theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n0,40,180\n");
   const CDTable file = answer(scratch, copper + "--dhr --geometries q.csv");
   EXPECT_EQ(file.text("theta_r_deg"), (std::vector<std::string>{"40", "40"}));
-  EXPECT_EQ(file.number(0, "dhr"), answer(scratch, copper + "--dhr --theta-i 30 --format csv").number(0, "dhr"));
+  EXPECT_EQ(file.number(0, "dhr"),
+            answer(scratch, copper + "--dhr --theta-i 30 --format csv").number(0, "dhr"));
   EXPECT_NE(file.number(0, "dhr"), file.number(1, "dhr"));
 }
 
 // Without shadowing the BRDF has no bound at the horizon (chapter BRDFTorranceSparrow); a table cannot hold that.
 TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
-  const Outcome outcome = malusIn(scratch.path, copper + "--param shadowing=none --theta-i 30 --theta-r 90 --phi 180 --out a.csv");
+  const Outcome outcome = malusIn(
+      scratch.path,
+      copper + "--param shadowing=none --theta-i 30 --theta-r 90 --phi 180 --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
-            "command line: --theta-r = 90 deg: has no finite BRDF here; stay below 90, or choose a shadowing other than none\n");
+            "command line: --theta-r = 90 deg: has no finite BRDF here; stay below 90, or "
+            "choose a shadowing other than none\n");
   EXPECT_EQ(filesBelow(scratch.path), 0u);
 }
 
@@ -231,11 +268,15 @@ TEST(CommandBRDFIdentity, WhatCannotBeWrittenIsSaidSo) {
   put(scratch / "file", "precious\n");
   const Outcome below = malusIn(scratch.path, plate + "--out file/a.csv");
   EXPECT_EQ(below.code, 2);
-  EXPECT_EQ(below.err, "file/a.csv: cannot be written; name a file in a directory with room that you may write to\n");
+  EXPECT_EQ(below.err,
+            "file/a.csv: cannot be written; name a file in a directory with room that you may "
+            "write to\n");
   std::filesystem::create_directory(scratch / "directory");
   const Outcome directory = malusIn(scratch.path, plate + "--out directory");
   EXPECT_EQ(directory.code, 2);
-  EXPECT_EQ(directory.err, "directory: cannot be written; name a file in a directory with room that you may write to\n");
+  EXPECT_EQ(directory.err,
+            "directory: cannot be written; name a file in a directory with room that you may "
+            "write to\n");
   EXPECT_EQ(contents(scratch / "file"), "precious\n");
   EXPECT_EQ(filesBelow(scratch.path), 1u);
 }
@@ -246,56 +287,79 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
   const std::string angles = " --theta-i 30 --theta-r 40 --phi 180 --out a.csv";
   const std::pair<std::string, std::string> cases[] = {
       {flags + "--param sigma=-1" + angles,
-       "command line: --param sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)"},
+       "command line: --param sigma = -1 rad: must be 1e-06 to 10; give roughness, standard "
+       "deviation of the facet slopes (1e-06 to 10)"},
       {flags + "--param sigma=0" + angles,
-       "command line: --param sigma = 0 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)"},
+       "command line: --param sigma = 0 rad: must be 1e-06 to 10; give roughness, standard "
+       "deviation of the facet slopes (1e-06 to 10)"},
       {flags + "--param sigma=1e200" + angles,
-       "command line: --param sigma = 1e200 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes "
+       "command line: --param sigma = 1e200 rad: must be 1e-06 to 10; give roughness, standard "
+       "deviation of the facet slopes "
        "(1e-06 to 10)"},
       {"brdf --model torrance-sparrow --param n=0 --param k=1 --param sigma=0.2" + angles,
-       "command line: --param n = 0: must be above 0, up to 1e+06; give real part of the index of refraction n + ik (above 0, up to 1e+06)"},
+       "command line: --param n = 0: must be above 0, up to 1e+06; give real part of the index "
+       "of refraction n + ik (above 0, up to 1e+06)"},
       {"brdf --model torrance-sparrow --param n=1 --param k=-2 --param sigma=0.2" + angles,
-       "command line: --param k = -2: must be 0 to 1e+06; give imaginary part of the index, 0 for a dielectric (0 to 1e+06)"},
-      {copper + "--theta-i 30 --sample -5", "command line: --sample = -5: is not a whole number from 1 to 4294967295; give e.g. 1000"},
+       "command line: --param k = -2: must be 0 to 1e+06; give imaginary part of the index, 0 "
+       "for a dielectric (0 to 1e+06)"},
+      {copper + "--theta-i 30 --sample -5",
+       "command line: --sample = -5: is not a whole number from 1 to 4294967295; give e.g. "
+       "1000"},
       {copper + "--theta-i 30 --sample 5 --seed x",
        "command line: --seed = x: is not a whole number from 0 to 4294967295; give e.g. 1000"},
-      {plate + "--out ''", "command line: --out: must name a file; malus --help shows what is understood"},
+      {plate + "--out ''",
+       "command line: --out: must name a file; malus --help shows what is understood"},
       {flags + "--param sigma=nan" + angles,
        "command line: --param sigma = nan: is not a finite number; write a number such as 0.2"},
       {flags + "--param sigma=0,2" + angles,
-       "command line: --param sigma = 0,2: is not a number; write a number such as 0.2 or 1.5e-3"},
+       "command line: --param sigma = 0,2: is not a number; write a number such as 0.2 or "
+       "1.5e-3"},
       {flags + "--param sgima=0.2" + angles,
-       "command line: --param sgima = 0.2: is no parameter of torrance-sparrow; did you mean sigma? known are: n, k, sigma, "
+       "command line: --param sgima = 0.2: is no parameter of torrance-sparrow; did you mean "
+       "sigma? known are: n, k, sigma, "
        "shadowing, diffuse"},
       {flags + angles,
-       "command line: --param sigma: is missing for torrance-sparrow; give roughness, standard deviation of the facet slopes "
+       "command line: --param sigma: is missing for torrance-sparrow; give roughness, standard "
+       "deviation of the facet slopes "
        "(1e-06 to 10)"},
-      {flags + "--param sigma" + angles, "command line: --param = sigma: has no name and value; write --param sigma=0.2"},
-      {flags + "--param n=1 --param sigma=0.2" + angles, "command line: --param n = 1: is given twice; give it once"},
+      {flags + "--param sigma" + angles,
+       "command line: --param = sigma: has no name and value; write --param sigma=0.2"},
+      {flags + "--param n=1 --param sigma=0.2" + angles,
+       "command line: --param n = 1: is given twice; give it once"},
       {flags + "--param sigma=0.2 --param shadowing=vgroove" + angles,
-       "command line: --param shadowing = vgroove: is none of the words allowed here; did you mean v-groove? known are: none, "
+       "command line: --param shadowing = vgroove: is none of the words allowed here; did you "
+       "mean v-groove? known are: none, "
        "v-groove, smith, smith-correlated"},
       {flags + "--param sigma=0.2 --wavelength-nm -5" + angles,
        "command line: --wavelength-nm = -5 nm: must be above 0; give e.g. 550"},
       {"brdf --model torence-sparrow" + angles,
-       "command line: --model = torence-sparrow: is not a model of malus; did you mean torrance-sparrow? known are: "
+       "command line: --model = torence-sparrow: is not a model of malus; did you mean "
+       "torrance-sparrow? known are: "
        "torrance-sparrow, lambertian"},
-      {"brdf" + angles, "command line: --model: is missing; malus brdf --list shows the models"},
+      {"brdf" + angles,
+       "command line: --model: is missing; malus brdf --list shows the models"},
       {copper + "--theta-i 90.5 --theta-r 40 --phi 180 --out a.csv",
-       "command line: --theta-i = 90.5 deg: must be 0 to 90; give the angle from the surface normal, in degrees"},
+       "command line: --theta-i = 90.5 deg: must be 0 to 90; give the angle from the surface "
+       "normal, in degrees"},
       {copper + "--theta-i -1 --theta-r 40 --phi 180 --out a.csv",
-       "command line: --theta-i = -1 deg: must be 0 to 90; give the angle from the surface normal, in degrees"},
+       "command line: --theta-i = -1 deg: must be 0 to 90; give the angle from the surface "
+       "normal, in degrees"},
       {copper + "--theta-i 30 --theta-r inf --phi 180 --out a.csv",
        "command line: --theta-r = inf: is not a finite number; write a number such as 0.2"},
       {copper + "--theta-i 30 --phi 180 --out a.csv",
-       "command line: --theta-r: is missing; give an angle in degrees, or a file with --geometries"},
+       "command line: --theta-r: is missing; give an angle in degrees, or a file with "
+       "--geometries"},
       {copper + "--theta-i 90 --dhr --out a.csv",
-       "command line: --theta-i = 90 deg: must be 0 to 90, without 90; give the angle from the surface normal, in degrees"},
-      {copper + "--geometries none.csv --out a.csv", "none.csv: cannot be opened; give the name of a readable CSV file"},
+       "command line: --theta-i = 90 deg: must be 0 to 90, without 90; give the angle from the "
+       "surface normal, in degrees"},
+      {copper + "--geometries none.csv --out a.csv",
+       "none.csv: cannot be opened; give the name of a readable CSV file"},
       {copper + "--geometries q.csv --theta-i 30 --out a.csv",
-       "command line: --geometries: excludes --theta-i, --theta-r and --phi; give a file or angles"},
+       "command line: --geometries: excludes --theta-i, --theta-r and --phi; give a file or "
+       "angles"},
       {plate + "--format xml",
-       "command line: --format: xml not in {text,csv,json}; malus --help shows what is understood"},
+       "command line: --format: xml not in {text,csv,json}; malus --help shows what is "
+       "understood"},
   };
   const Scratch scratch;
   for (const auto& [arguments, line] : cases) {
@@ -310,24 +374,30 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
 TEST(CommandBRDFIdentity, ABadFileIsOneLineAndLeavesNothing) {
   const std::pair<std::string, std::string> cases[] = {
       {"theta_i_deg,phi_deg\n30,180\n",
-       "q.csv:1: theta_r_deg: is not among the columns; did you mean theta_i_deg? known are: theta_i_deg, phi_deg"},
+       "q.csv:1: theta_r_deg: is not among the columns; did you mean theta_i_deg? known are: "
+       "theta_i_deg, phi_deg"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n30,4o,180\n",
        "q.csv:3: theta_r_deg = 4o: is not a number; write a number such as 0.2 or 1.5e-3"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,95,180\n",
-       "q.csv:2: theta_r_deg = 95 deg: must be 0 to 90; give the angle from the surface normal, in degrees"},
+       "q.csv:2: theta_r_deg = 95 deg: must be 0 to 90; give the angle from the surface "
+       "normal, in degrees"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,nan,180\n",
        "q.csv:2: theta_r_deg = nan: is not a finite number; write a number such as 0.2"},
       {"theta_i_deg,theta_r_deg,phi_deg,sigma\n30,40,180,0.2\n",
        "q.csv:1: sigma: is given by --param as well; give it once, by flag or by column"},
       {"theta_i_deg,theta_r_deg,phi_deg,shadwing\n30,40,180,smith\n",
-       "q.csv:1: shadwing: is almost a column that malus knows; did you mean shadowing? known are: theta_i_deg, theta_r_deg, "
+       "q.csv:1: shadwing: is almost a column that malus knows; did you mean shadowing? known "
+       "are: theta_i_deg, theta_r_deg, "
        "phi_deg, n, k, sigma, shadowing, diffuse"},
       {"theta_i_deg,theta_r_deg,phi_deg,f00\n30,40,180,1\n",
        "q.csv:1: f00: is a column of the answer; leave it out of the question"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,40\n",
        "q.csv:2: 2 cells: but line 1 names 3 columns; give one cell for each column"},
-      {"theta_i_deg,theta_r_deg,phi_deg\n", "q.csv: holds no geometry; write a line of angles below the column names"},
-      {"", "q.csv: holds no line of column names; begin with a line such as theta_i_deg,theta_r_deg,phi_deg"},
+      {"theta_i_deg,theta_r_deg,phi_deg\n",
+       "q.csv: holds no geometry; write a line of angles below the column names"},
+      {"",
+       "q.csv: holds no line of column names; begin with a line such as "
+       "theta_i_deg,theta_r_deg,phi_deg"},
   };
   const Scratch scratch;
   for (const auto& [question, line] : cases) {
@@ -342,12 +412,15 @@ TEST(CommandBRDFIdentity, ABadFileIsOneLineAndLeavesNothing) {
 // A parameter that is wrong in one row is named with that row, and nothing is written.
 TEST(CommandBRDFIdentity, AParameterInATableIsCheckedWithItsLine) {
   const Scratch scratch;
-  put(scratch / "q.csv", "theta_i_deg,theta_r_deg,phi_deg,sigma\n30,40,180,0.2\n30,40,180,-1\n");
-  const Outcome outcome =
-      malusIn(scratch.path, "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --geometries q.csv --out a.csv");
+  put(scratch / "q.csv",
+      "theta_i_deg,theta_r_deg,phi_deg,sigma\n30,40,180,0.2\n30,40,180,-1\n");
+  const Outcome outcome = malusIn(scratch.path,
+                                  "brdf --model torrance-sparrow --param n=0.405 --param "
+                                  "k=2.950 --geometries q.csv --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
-            "q.csv:3: sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation of the facet slopes (1e-06 to 10)\n");
+            "q.csv:3: sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation "
+            "of the facet slopes (1e-06 to 10)\n");
   EXPECT_EQ(filesBelow(scratch.path), 1u);
 }
 

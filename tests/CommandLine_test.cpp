@@ -18,13 +18,17 @@ const std::filesystem::path source_data = MALUS_SOURCE_DATA;
 
 /// A copy of the committed validation directory, to be corrupted.
 struct Copy : Scratch {
-  Copy() { std::filesystem::copy(source_data, path / "validation", std::filesystem::copy_options::recursive); }
+  Copy() {
+    std::filesystem::copy(source_data, path / "validation",
+                          std::filesystem::copy_options::recursive);
+  }
   Outcome run(const std::string& arguments) const {
     return malusIn(path, arguments, "MALUS_DATA=" + (path / "validation").string());
   }
 };
 
-void replaceIn(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+void replaceIn(const std::filesystem::path& file, const std::string& from,
+               const std::string& to) {
   std::string text = contents(file);
   ASSERT_NE(text.find(from), std::string::npos) << file;
   put(file, text.replace(text.find(from), from.size(), to));
@@ -48,12 +52,16 @@ TEST(CommandLineIdentity, HelpVersionAndNoArguments) {
 TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
   const Scratch scratch;
   const std::pair<std::string, std::string> cases[] = {
-      {"reprodce", "command line: command = reprodce: is not a command of malus; did you mean reproduce? known are: "
-                   "reproduce, brdf, table\n"},
+      {"reprodce",
+       "command line: command = reprodce: is not a command of malus; did you mean reproduce? "
+       "known are: "
+       "reproduce, brdf, table\n"},
       {"reproduce F3.99",
-       "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce --list shows all\n"},
+       "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce "
+       "--list shows all\n"},
       {"reproduce --lst",
-       "command line: The following argument was not expected: --lst; malus --help shows what is understood\n"},
+       "command line: The following argument was not expected: --lst; malus --help shows what "
+       "is understood\n"},
       {"table none.csv", "none.csv: cannot be opened; give the name of a readable CSV file\n"},
       {"table --seal none.csv", "none.csv: cannot be opened; name a readable CSV file\n"}};
   for (const auto& [arguments, line] : cases) {
@@ -72,7 +80,9 @@ TEST(CommandLineIdentity, WhatIsNotYetBuiltIsSaidSo) {
   put(inventory, contents(inventory) + "F9.9,figure,A figure of no chapter,nowhere\n");
   const Outcome outcome = copy.run("reproduce F9.9 --out out");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "command line: ID = F9.9: is not yet built; malus reproduce --list shows what is\n");
+  EXPECT_EQ(
+      outcome.err,
+      "command line: ID = F9.9: is not yet built; malus reproduce --list shows what is\n");
   EXPECT_FALSE(std::filesystem::exists(copy / "out"));
 }
 
@@ -91,10 +101,13 @@ TEST(ReproduceIdentity, AFileIsNoOutputDirectory) {
 
 TEST(CommandLineIdentity, TheDataDirectoryMustBeOne) {
   const Scratch scratch;
-  const Outcome outcome = malusIn(scratch.path, "reproduce --list", "MALUS_DATA=/no/such/place");
+  const Outcome outcome =
+      malusIn(scratch.path, "reproduce --list", "MALUS_DATA=/no/such/place");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "environment: MALUS_DATA = /no/such/place: is not a directory; name the directory validation "
-                         "of malus's source\n");
+  EXPECT_EQ(outcome.err,
+            "environment: MALUS_DATA = /no/such/place: is not a directory; name the directory "
+            "validation "
+            "of malus's source\n");
 }
 
 TEST(CommandLineIdentity, ATableIsCheckedAndSealed) {
@@ -111,8 +124,9 @@ TEST(CommandLineIdentity, ATableIsCheckedAndSealed) {
 
 // The IDs of the thesis: its tables, the figures from formulas and of scenes, the claims, and our eleven findings.
 TEST(CommandLineIdentity, TheListHoldsEveryId) {
-  std::set<std::string> expected{"T3.1", "T3.2", "T3.3", "T6.1", "E6.1", "T7.1", "T7.2", "T7.3", "T7.4", "T7.5", "A.2",
-                                 "F3.1", "F3.2", "F3.3", "F3.4", "F3.7", "F3.9", "F5.1", "F5.5", "F5.6", "F6.3"};
+  std::set<std::string> expected{"T3.1", "T3.2", "T3.3", "T6.1", "E6.1", "T7.1", "T7.2",
+                                 "T7.3", "T7.4", "T7.5", "A.2",  "F3.1", "F3.2", "F3.3",
+                                 "F3.4", "F3.7", "F3.9", "F5.1", "F5.5", "F5.6", "F6.3"};
   for (int i = 1; i <= 44; ++i) expected.insert(fmt::format("F7.{}", i));
   for (int i = 1; i <= 7; ++i) expected.insert(fmt::format("C{}", i));
   for (int i = 1; i <= 11; ++i) expected.insert(fmt::format("N{}", i));
@@ -146,7 +160,8 @@ TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
   const auto report = [&](const std::string& out) {
     EXPECT_EQ(malusIn(scratch.path, "reproduce E6.1 F3.9 --out " + out).code, 0);
     return contents(scratch / out / "partial.html") + contents(scratch / out / "partial.json") +
-           contents(scratch / out / "F3.9" / "fresnel.csv") + contents(scratch / out / "F3.9" / "fresnel.svg");
+           contents(scratch / out / "F3.9" / "fresnel.csv") +
+           contents(scratch / out / "F3.9" / "fresnel.svg");
   };
   const std::string one = report("one");
   EXPECT_GT(one.size(), 10000u);
@@ -155,13 +170,18 @@ TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
 
 TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
   const Copy copy;
-  replaceIn(copy / "validation" / "verdicts.csv", "T3.1,S1.positive,reproduced", "T3.1,S1.positive,differs");
+  replaceIn(copy / "validation" / "verdicts.csv", "T3.1,S1.positive,reproduced",
+            "T3.1,S1.positive,differs");
   const Outcome outcome = copy.run("reproduce T3.1 --out out");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("CHANGED T3.1 S1.positive: committed differs, now reproduced\n"), std::string::npos) << outcome.out;
-  EXPECT_EQ(copy.run("reproduce F3.9 --out out").code, 0);  // a partial run looks only at its own items
+  EXPECT_NE(outcome.out.find("CHANGED T3.1 S1.positive: committed differs, now reproduced\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(copy.run("reproduce F3.9 --out out").code,
+            0);  // a partial run looks only at its own items
   EXPECT_EQ(copy.run("reproduce T3.1 --accept --out out").code, 0);
-  EXPECT_EQ(contents(copy / "validation" / "verdicts.csv"), contents(source_data / "verdicts.csv"));
+  EXPECT_EQ(contents(copy / "validation" / "verdicts.csv"),
+            contents(source_data / "verdicts.csv"));
 }
 
 // First the checksum notices; then the corrupted number is sealed, and the verdict notices.

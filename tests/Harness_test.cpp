@@ -35,14 +35,17 @@ void throwing(CDItem& item) {
 }
 void silent(CDItem&) {}
 
-const std::vector<CDRegisteredItem> functions{{"T1", everyVerdict}, {"T2", throwing}, {"T3", silent}};
+const std::vector<CDRegisteredItem> functions{
+    {"T1", everyVerdict}, {"T2", throwing}, {"T3", silent}};
 
 /// A data directory with an inventory of four items (T4 is not built) and T1's verdicts committed.
 struct Data : Scratch {
-  explicit Data(const std::string& verdicts =
-                    "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n") {
+  explicit Data(
+      const std::string& verdicts =
+          "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n") {
     put(path / "inventory.csv",
-        "id,kind,title,place\nT1,table,One,page 1\nT2,table,Two,\nT3,table,Three,\nT4,table,Four,\n");
+        "id,kind,title,place\nT1,table,One,page "
+        "1\nT2,table,Two,\nT3,table,Three,\nT4,table,Four,\n");
     put(path / "verdicts.csv", "item,claim,verdict\n" + verdicts);
     put(path / "plots" / "curve.gp",
         "if (term eq 'svg') set terminal svg; else set terminal pngcairo\nset output out\n"
@@ -72,7 +75,8 @@ TEST(HarnessIdentity, HalfAUnitOfTheLastPrintedDigitDecides) {
   EXPECT_FALSE(CDPrinted("1.5e-3").meets(0.00156));
   EXPECT_TRUE(CDPrinted("12E2").meets(1249));
   EXPECT_FALSE(CDPrinted("12E2").meets(1251));
-  EXPECT_TRUE(CDPrinted("1.25").meets(1.255));  // on the boundary: either side is a rounding of ours
+  EXPECT_TRUE(
+      CDPrinted("1.25").meets(1.255));  // on the boundary: either side is a rounding of ours
   EXPECT_FALSE(CDPrinted("1.25").meets(not_a_number));
   EXPECT_THROW((void)CDPrinted("1,25"), CDInputError);
 }
@@ -151,14 +155,19 @@ TEST(HarnessInvariant, APictureThatCannotBeDrawnIsAFailure) {
 TEST(HarnessIdentity, AnUnknownIdIsRefusedBeforeAnythingIsWritten) {
   const Data data;
   EXPECT_EQ(complaint(data, "T1x"),
-            "command line: ID = T1x: is not in the inventory; did you mean T1? malus reproduce --list shows all");
-  EXPECT_EQ(complaint(data, "T4"), "command line: ID = T4: is not yet built; malus reproduce --list shows what is");
+            "command line: ID = T1x: is not in the inventory; did you mean T1? malus reproduce "
+            "--list shows all");
+  EXPECT_EQ(complaint(data, "T4"),
+            "command line: ID = T4: is not yet built; malus reproduce --list shows what is");
   EXPECT_FALSE(std::filesystem::exists(data / "out"));
 }
 
 TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNoticed) {
-  const auto changes = [](const std::string& verdicts) { return Data(verdicts).run({"T1"}).changes; };
-  const auto altered = changes("T1,good,differs\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n");
+  const auto changes = [](const std::string& verdicts) {
+    return Data(verdicts).run({"T1"}).changes;
+  };
+  const auto altered =
+      changes("T1,good,differs\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n");
   ASSERT_EQ(altered.size(), 1u);
   EXPECT_EQ(altered[0].claim, "good");
   EXPECT_EQ(altered[0].committed, "differs");
@@ -167,13 +176,16 @@ TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNot
   ASSERT_EQ(missing.size(), 1u);
   EXPECT_EQ(missing[0].committed, "");
   const auto invented = changes(
-      "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\nT1,new,erratum\n");
+      "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not "
+      "testable\nT1,new,erratum\n");
   ASSERT_EQ(invented.size(), 1u);
   EXPECT_EQ(invented[0].now, "");
 }
 
 TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {
-  const Data data("T9,gone,reproduced\nT1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n");
+  const Data data(
+      "T9,gone,reproduced\nT1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,"
+      "not testable\n");
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
   const CDRun whole = data.run({});
   ASSERT_EQ(whole.changes.size(), 1u);
@@ -187,12 +199,14 @@ TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
   const auto rows = readVerdicts(data.path);
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[0], (CDVerdictRow{"T1", "good", "reproduced"}));
-  EXPECT_EQ(rows[4], (CDVerdictRow{"T2", "first", "reproduced"}));  // it failed, and keeps what it had
+  EXPECT_EQ(rows[4],
+            (CDVerdictRow{"T2", "first", "reproduced"}));  // it failed, and keeps what it had
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
 }
 
 TEST(HarnessInvariant, AFunctionWithoutARowOfTheInventoryIsADefect) {
   const Data data;
   const std::vector<CDRegisteredItem> stray{{"T7", everyVerdict}};
-  EXPECT_THROW(reproduce({{}, data / "out", data.path}, readInventory(data.path), stray), CDInvariantError);
+  EXPECT_THROW(reproduce({{}, data / "out", data.path}, readInventory(data.path), stray),
+               CDInvariantError);
 }

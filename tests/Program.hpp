@@ -15,10 +15,12 @@ struct Outcome {
 /// Runs a shell command in a directory; the streams are kept outside of it.
 inline Outcome runIn(const std::filesystem::path& directory, const std::string& command) {
   const Scratch streams;
-  const int status = std::system(("cd '" + directory.string() + "' && " + command + " >'" + (streams / "out").string() +
-                                  "' 2>'" + (streams / "err").string() + "' </dev/null")
+  const int status = std::system(("cd '" + directory.string() + "' && " + command + " >'" +
+                                  (streams / "out").string() + "' 2>'" +
+                                  (streams / "err").string() + "' </dev/null")
                                      .c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(streams / "out"), contents(streams / "err")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(streams / "out"),
+          contents(streams / "err")};
 }
 
 #ifdef MALUS_PROGRAM
