@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <bit>
@@ -12,6 +13,9 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <thread>
+
+#include "Scratch.hpp"
 
 using namespace malus;
 
@@ -181,4 +185,22 @@ TEST(CDTableInvariant, AFileIsWrittenWholeOrNotAtAll) {
     files += entry.is_regular_file();
   EXPECT_EQ(files, 1u);
   std::filesystem::remove_all(directory);
+}
+
+// What is no file of its own is not replaced: the file behind a link is, and a pipe swallows the text and stays a pipe.
+TEST(CDTableInvariant, LinksAndPipesStayWhatTheyAre) {
+  const Scratch scratch;
+  put(scratch / "file", "old\n");
+  std::filesystem::create_symlink(scratch / "file", scratch / "link");
+  writeWhole(scratch / "link", "new\n");
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch / "link"));
+  EXPECT_EQ(contents(scratch / "file"), "new\n");
+  ASSERT_EQ(::mkfifo((scratch / "pipe").c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = contents(scratch / "pipe"); });
+  writeWhole(scratch / "pipe", "through\n");
+  reader.join();
+  EXPECT_EQ(read, "through\n");
+  EXPECT_TRUE(std::filesystem::is_fifo(scratch / "pipe"));
+  EXPECT_EQ(filesBelow(scratch.path), 2u);  // the file and the link to it: nothing is left over
 }
