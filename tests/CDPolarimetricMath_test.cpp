@@ -264,7 +264,8 @@ TEST(CDPolarimetricMathIdentity, AnOperandMayBeTheResult) {
   CDStokesVector s(1, 2, 3, 4);
   s += s;
   EXPECT_EQ(s, CDStokesVector(2, 4, 6, 8));
-  s -= s;
+  const CDStokesVector& itself = s;
+  s -= itself;
   EXPECT_EQ(s, CDStokesVector(0));
   const CDMuellerMatrix m = retarder(1.0, 0.3) * linearPolarizer(0.2);
   CDMuellerMatrix square = m;
