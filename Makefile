@@ -9,7 +9,8 @@ GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 
 # What Debian 12 calls the things we stand on: to build and run; to weave the book, and to test its weaver.
 PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
-           libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev
+           libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
+           libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
 BOOK    := latexml fonts-texgyre fonts-texgyre-math
 
 .PHONY: all test book reproduce bench format dist sanitize clang coverage fresh-machine clean help
