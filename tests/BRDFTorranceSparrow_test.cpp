@@ -69,8 +69,10 @@ Coefficients hecht(double cos_beta, double n, double k) {
 struct Axes {
   CDVector s, p;
 };
+/// Light that meets a facet head on has no plane of incidence: any transverse axis serves, here y.
 Axes axes(const CDVector& k, const CDVector& normal) {
-  const CDVector s = normalized(cross(normal, k));
+  const CDVector across = cross(normal, k);
+  const CDVector s = across.getLength() < 1e-12 ? CDVector{0, 1, 0} : normalized(across);
   return {s, cross(k, s)};
 }
 
