@@ -1,0 +1,252 @@
+// The sky as the radiometry asks it, tables of it, and a haze (nw/world/CDSky.nw).
+#include "world/CDSky.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "world/CDSun.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double pi = std::numbers::pi, degree = pi / 180;
+const CDVector up{0, 0, 1};
+
+using Spectrum = CDSpectralVector<CDStokesVector>;
+CDStokesVector only(const Spectrum& spectrum) { return spectrum[0]; }
+CDStokesVector ask(const CDSky& sky, const CDVector& direction) {
+  Spectrum out(sky.grid());
+  sky.radiance(direction, out);
+  return only(out);
+}
+double distance(const CDStokesVector& a, const CDStokesVector& b) {
+  double most = 0;
+  for (int i = 0; i < 4; ++i) most = std::max(most, std::abs(a.getStokes(i) - b.getStokes(i)));
+  return most;
+}
+
+// Single Rayleigh scattering drawn as vectors: unpolarised sunlight shakes an electron in every
+// direction across the beam, and we see the two of them across our line of sight. No formula of the
+// chapter is used: Stokes components are sums over two fields a, b across the sunbeam.
+CDStokesVector rayleigh(const CDVector& to_sky, const CDVector& to_sun) {
+  const CDRayFrame seen = rayFrame(-to_sky, up), beam = rayFrame(-to_sun, {0.1, 0.2, 0.3});
+  double s0 = 0, s1 = 0, s2 = 0;
+  for (const CDVector& field : {beam.s, beam.p}) {
+    const double s = dot(field, seen.s), p = dot(field, seen.p);
+    s0 += s * s + p * p, s1 += s * s - p * p, s2 += 2 * s * p;
+  }
+  return {s0, s1, s2, 0};
+}
+
+const double sun_azimuth_deg = 212;
+const CDVector to_sun = compassDirection(40 * degree, sun_azimuth_deg * degree);
+
+// The analytic sky written to a table; the literature's components are made from its definitions:
+// l = e_theta and r = e_phi of the direction of travel, phi clockwise from the sunbeam's.
+std::string written(CDSkyConvention convention, double u_sign = 1, double step = 5) {
+  const bool ours = convention == CDSkyConvention::malus;
+  std::string text = fmt::format("# convention: {}\n", nameOf(convention));
+  if (!ours) text += fmt::format("# sun_azimuth_deg: {}\n", sun_azimuth_deg);
+  text += ours ? "zenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2,S3\n" : "zenith_deg,phi_deg,wavelength_nm,I,Q,U,V\n";
+  for (double zenith = 0; zenith <= 90; zenith += step)
+    for (double azimuth = 0; azimuth < 360; azimuth += step) {
+      const double compass = azimuth + (ours ? 0 : sun_azimuth_deg);
+      // in the zenith each row has the axes of its own azimuth: the limit of small zenith angles
+      const CDVector d = compassDirection(std::max(zenith, 1e-7) * degree, compass * degree);
+      double q, u;
+      const double i = rayleigh(d, to_sun).getScalar();
+      if (ours) {
+        q = rayleigh(d, to_sun).getStokes(1), u = rayleigh(d, to_sun).getStokes(2);
+      } else {
+        const CDVector k = -d;
+        const CDVector r = normalized(cross(k, up));  // clockwise azimuth of travel
+        const CDVector l = cross(r, k) * (cross(r, k).z < 0 ? 1 : -1);  // larger zenith angle of travel: down
+        q = u = 0;
+        const CDRayFrame beam = rayFrame(-to_sun, up);
+        for (const CDVector& field : {beam.s, beam.p}) {
+          const double fl = dot(field, l), fr = dot(field, r);
+          q += (fr * fr - fl * fl) * (convention == CDSkyConvention::iprt ? -1 : 1);
+          u += 2 * fl * fr;
+        }
+      }
+      for (const double nm : {400.0, 600.0})
+        text += fmt::format("{},{},{},{},{},{},0\n", zenith, azimuth, nm, i * nm, q * nm, u_sign * u * nm);
+    }
+  return text;
+}
+
+std::unique_ptr<CDTableSky> skyOf(const std::string& text, double nm = 500) {
+  std::istringstream stream(text);
+  return std::make_unique<CDTableSky>(CDTable::parse(stream, "sky.csv"), CDSpectralGrid::make({nm}));
+}
+std::string messageOf(const std::string& text, double nm = 500) {
+  try {
+    skyOf(text, nm);
+  } catch (const CDInputError& error) {
+    return error.what();
+  }
+  return "";
+}
+}  // namespace
+
+TEST(CDSkyIdentity, UniformSkyIsTheSameEverywhere) {
+  const auto grid = CDSpectralGrid::make({400.0, 500.0});
+  const CDUniformSky sky(Spectrum(grid, 0.05));
+  Spectrum out(grid);
+  for (const CDVector& d : {CDVector{0, 0, 1}, CDVector{1, 0, 0}, CDVector{0, 0, -1}}) {
+    sky.radiance(d, out);
+    EXPECT_EQ(out, Spectrum(grid, 0.05));
+  }
+  EXPECT_NE(out, Spectrum(grid, 0.051));  // negative control
+  EXPECT_FALSE(sky.polarized());
+  ASSERT_NE(sky.uniform(), nullptr);
+  EXPECT_EQ(*sky.uniform(), Spectrum(grid, 0.05));
+  EXPECT_EQ(blackSky(grid)->uniform()->grid(), *grid);
+}
+
+TEST(CDSkyIdentity, UniformSkyRefusesWhatItCannotBe) {
+  const auto grid = CDSpectralGrid::make({400.0});
+  EXPECT_THROW(CDUniformSky(Spectrum(grid, -1.0)), CDMathError);
+  EXPECT_THROW(CDUniformSky(Spectrum(grid, std::nan(""))), CDMathError);
+  EXPECT_THROW(CDUniformSky(Spectrum(grid, CDStokesVector(1, 0.5, 0, 0))), CDMathError);
+}
+
+// The three conventions of one sky are one sky. At the nodes the tables are exact: rounding of the
+// decimal numbers is in the 16th digit.
+TEST(CDSkyInvariant, ThreeConventionsAreOneSky) {
+  const auto ours = skyOf(written(CDSkyConvention::malus));
+  const auto natraj = skyOf(written(CDSkyConvention::natraj));
+  const auto iprt = skyOf(written(CDSkyConvention::iprt));
+  for (double zenith = 5; zenith <= 90; zenith += 5)
+    for (double azimuth = 0; azimuth < 360; azimuth += 5) {
+      const CDVector ours_d = compassDirection(zenith * degree, azimuth * degree);
+      const CDVector theirs_d = compassDirection(zenith * degree, (sun_azimuth_deg + azimuth) * degree);
+      EXPECT_LT(distance(ask(*ours, ours_d), rayleigh(ours_d, to_sun) * 500.0), 1e-9);
+      EXPECT_LT(distance(ask(*natraj, theirs_d), rayleigh(theirs_d, to_sun) * 500.0), 1e-9);
+      EXPECT_LT(distance(ask(*iprt, theirs_d), rayleigh(theirs_d, to_sun) * 500.0), 1e-9);
+    }
+}
+
+TEST(CDSkyInvariant, NegativeControlTheOtherSignOfUIsAnotherSky) {
+  const auto wrong = skyOf(written(CDSkyConvention::iprt, -1));
+  const CDVector d = compassDirection(50 * degree, (sun_azimuth_deg + 60) * degree);
+  EXPECT_GT(distance(ask(*wrong, d), rayleigh(d, to_sun) * 500.0), 50);
+}
+
+TEST(CDSkyInvariant, LightScatteredOnceIsPolarisedAcrossThePlaneOfScattering) {
+  const auto sky = skyOf(written(CDSkyConvention::natraj));
+  const CDVector d = compassDirection(60 * degree, (sun_azimuth_deg + 75) * degree);
+  const CDStokesVector light = ask(*sky, d);
+  const CDRayFrame frame = rayFrame(-d, up);
+  const CDVector field = std::cos(light.getAoLP()) * frame.s + std::sin(light.getAoLP()) * frame.p;
+  EXPECT_NEAR(dot(field, to_sun), 0, 1e-6);  // AoLP from decimal numbers; d is a node
+}
+
+// Between nodes linear interpolation errs by h^2/8 times the second derivative; components are sums of
+// harmonics of the angles up to the second: |f''| <= 4 |f|, two angles.
+TEST(CDSkyInvariant, InterpolationErrsAsTheStepSquared) {
+  for (const double step : {10.0, 5.0}) {
+    const auto sky = skyOf(written(CDSkyConvention::malus, 1, step));
+    double worst = 0;
+    for (double zenith = step / 2; zenith < 90; zenith += step)
+      for (double azimuth = step / 2; azimuth < 360; azimuth += step) {
+        const CDVector d = compassDirection(zenith * degree, azimuth * degree);
+        worst = std::max(worst, distance(ask(*sky, d), rayleigh(d, to_sun) * 500.0));
+      }
+    const double bound = 2 * 4 * 1000.0 * std::pow(step * degree, 2) / 8;
+    EXPECT_LT(worst, bound);
+    EXPECT_GT(worst, bound / 20);
+  }
+}
+
+TEST(CDSkyIdentity, TheZenithHasTheAxesOfTheFrame) {
+  const auto sky = skyOf(written(CDSkyConvention::malus));
+  EXPECT_LT(distance(ask(*sky, up), rayleigh(up, to_sun) * 500.0), 1e-3);  // rows 1e-7 deg off the zenith
+}
+
+TEST(CDSkyIdentity, BlackBelowTheHorizonAndAroundTheSeam) {
+  const auto sky = skyOf(written(CDSkyConvention::malus));
+  EXPECT_EQ(ask(*sky, normalized({1, 0, -0.01})).getScalar(), 0);
+  const CDVector left = compassDirection(1, 359.999999 * degree), right = compassDirection(1, 1e-6 * degree);
+  EXPECT_LT(distance(ask(*sky, left), ask(*sky, right)), 1e-3);
+}
+
+TEST(CDSkyIdentity, ATableWithoutPolarisationIsAnUnpolarisedSky) {
+  std::string text = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n";
+  for (const char* zenith : {"0", "90"}) text += fmt::format("{},0,500,{}\n", zenith, zenith[0] == '0' ? 1 : 3);
+  const auto sky = skyOf(text);
+  EXPECT_FALSE(sky->polarized());
+  EXPECT_NEAR(ask(*sky, compassDirection(45 * degree, 1)).getScalar(), 2, 1e-12);
+  EXPECT_FALSE(ask(*sky, up).isPolarized());
+}
+
+TEST(CDSkyInvariant, RefusesWithASentence) {
+  const std::string good = written(CDSkyConvention::malus, 1, 30);
+  EXPECT_EQ(messageOf(good), "");
+  const auto without = [](std::string text, const std::string& what) {
+    const std::size_t at = text.find(what);
+    return text.erase(at, text.find('\n', at) + 1 - at);
+  };
+  const std::string missing = messageOf(without(good, "# convention"));
+  for (const char* choice : {"convention", "malus", "natraj", "iprt"})
+    EXPECT_NE(missing.find(choice), std::string::npos) << missing;
+  EXPECT_NE(messageOf("# convention: modtran\n" + without(good, "# convention")).find("modtran"), std::string::npos);
+  EXPECT_NE(messageOf(without(good, "60,90,600")).find("no row for zenith 60 deg, azimuth 90 deg, 600 nm"), std::string::npos);
+  EXPECT_NE(messageOf(good + "60,90,600,1,0,0,0\n").find("repeats"), std::string::npos);
+  EXPECT_NE(messageOf(good, 700).find("does not cover the band at 700 nm"), std::string::npos);
+  EXPECT_NE(messageOf(good + "60,95,600,-1,0,0,0\n").find("no row"), std::string::npos);
+  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n").find("empty"), std::string::npos);
+  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,1\n80,0,500,1\n").find("0 to 80 deg"), std::string::npos);
+  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,-1\n90,0,500,1\n").find("negative"), std::string::npos);
+  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n0,0,500,1,1,1\n90,0,500,1,0,0\n").find("exceeds one"), std::string::npos);
+  EXPECT_NE(messageOf("# convention: iprt\nzenith_deg,phi_deg,wavelength_nm,I\n0,0,500,1\n90,0,500,1\n").find("sun_azimuth_deg"), std::string::npos);
+}
+
+// The default sampler: the mean of z over its density must be what the density says. With n draws of
+// a stratified grid the mean of z over the hemisphere is 1/2 up to half a stratum.
+TEST(CDSkyInvariant, DrawsUniformlyFromTheUpperHemisphere) {
+  const CDUniformSky sky(Spectrum(CDSpectralGrid::make({400.0}), 1.0));
+  double z = 0, x2 = 0;
+  const int n = 100;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const CDSky::Sample drawn = sky.sample((i + 0.5) / n, (j + 0.5) / n);
+      EXPECT_NEAR(drawn.to_sky.getLength(), 1, 1e-15);
+      EXPECT_EQ(drawn.density, sky.density(drawn.to_sky));
+      z += drawn.to_sky.z, x2 += drawn.to_sky.x * drawn.to_sky.x;
+    }
+  EXPECT_NEAR(z / (n * n), 0.5, 1e-12);
+  EXPECT_NEAR(x2 / (n * n), 1.0 / 3, 1e-4);  // midpoint rule: (1/n)^2
+  EXPECT_EQ(sky.density({0, 0, -1}), 0);
+}
+
+// Two halves of a path are the whole path; no path changes nothing; a very long one forgets the scene.
+RC_GTEST_PROP(CDAtmosphereInvariant, HazeComposes, ()) {
+  const auto grid = CDSpectralGrid::make({500.0});
+  const double beta = *rc::gen::inRange(0, 1000) * 1e-5, split = *rc::gen::inRange(0, 100) * 0.01;
+  const CDUniformHaze haze(CDSpectralVector<double>(grid, beta), CDSpectralVector<double>(grid, 0.2));
+  const CDVector a{0, 0, 0}, b{300, 400, 1200}, middle = a + split * (b - a);
+  Spectrum whole(grid, CDStokesVector(1, 0.3, -0.2, 0.1)), halves = whole, none = whole;
+  haze.apply(a, b, whole);
+  haze.apply(a, middle, halves);
+  haze.apply(middle, b, halves);
+  haze.apply(b, b, none);
+  RC_ASSERT(distance(only(whole), only(halves)) < 1e-14);
+  RC_ASSERT(distance(only(none), CDStokesVector(1, 0.3, -0.2, 0.1)) < 1e-15);
+  const double lost = 1 - std::exp(-beta * 1300);
+  RC_ASSERT(std::abs(only(whole).getStokes(1) - 0.3 * (1 - lost)) < 1e-14);
+  RC_ASSERT(std::abs(only(whole).getScalar() - (1 - lost) - 0.2 * lost) < 1e-14);
+}
+
+TEST(CDAtmosphereInvariant, HazeRefusesNonsense) {
+  const auto grid = CDSpectralGrid::make({500.0});
+  using Numbers = CDSpectralVector<double>;
+  EXPECT_THROW(CDUniformHaze(Numbers(grid, -1.0), Numbers(grid, 0.0)), CDMathError);
+  EXPECT_THROW(CDUniformHaze(Numbers(grid, 1.0), Numbers(grid, std::nan(""))), CDMathError);
+  EXPECT_THROW(CDUniformHaze(Numbers(grid, 1.0), Numbers(CDSpectralGrid::make({501.0}), 1.0)), CDGridError);
+}
