@@ -6,33 +6,26 @@
 #include <map>
 #include <string>
 
-#include "program/Harness.hpp"
+#include "Items.hpp"
 
 using namespace malus;
 
 namespace {
 const CDItem& measured() {
-  static const CDItem item = [] {
-    CDItem run("X.DHR", "nowhere", "validation");
-    reproduceXDHR(run);
-    return run;
-  }();
+  static const CDItem item = ran("X.DHR", reproduceXDHR);
   return item;
 }
 }  // namespace
 
 TEST(OwnMeasurementsInvariant, BothClaimsHoldAndBothPicturesAreDrawn) {
-  std::map<std::string, CDVerdict> verdicts;
-  for (const CDClaim& claim : measured().claims()) verdicts[claim.name] = claim.verdict;
   const std::map<std::string, CDVerdict> expected{{"table", CDVerdict::reproduced},
                                                   {"sum", CDVerdict::reproduced}};
-  EXPECT_EQ(verdicts, expected);
+  EXPECT_EQ(verdictsOf(measured()), expected);
   EXPECT_EQ(measured().pictures().size(), 2u);
 }
 
 TEST(OwnMeasurementsRegression, ValuesThatTheProseRestsOn) {
-  std::map<std::string, std::string> values;
-  for (const auto& [name, text] : measured().values()) values[name] = text;
+  auto values = valuesOf(measured());
   EXPECT_EQ(values["diffuse40"], "0.0085");
   EXPECT_EQ(values["diffuse30"], "0.0044");
   // the factor two of the table's coordinate is the best of those shown

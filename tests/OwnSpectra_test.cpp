@@ -6,35 +6,28 @@
 #include <map>
 #include <string>
 
-#include "program/Harness.hpp"
+#include "Items.hpp"
 
 using namespace malus;
 
 namespace {
 const CDItem& measured() {
-  static const CDItem item = [] {
-    CDItem run("X.spectra", "nowhere", "validation");
-    reproduceXSpectra(run);
-    return run;
-  }();
+  static const CDItem item = ran("X.spectra", reproduceXSpectra);
   return item;
 }
 }  // namespace
 
 TEST(OwnSpectraInvariant, AllClaimsHoldAndAllPicturesAreDrawn) {
-  std::map<std::string, CDVerdict> verdicts;
-  for (const CDClaim& claim : measured().claims()) verdicts[claim.name] = claim.verdict;
   const std::map<std::string, CDVerdict> expected{{"integral", CDVerdict::reproduced},
                                                   {"peaks", CDVerdict::reproduced},
                                                   {"bands", CDVerdict::reproduced},
                                                   {"policies", CDVerdict::reproduced}};
-  EXPECT_EQ(verdicts, expected);
+  EXPECT_EQ(verdictsOf(measured()), expected);
   EXPECT_EQ(measured().pictures().size(), 3u);
 }
 
 TEST(OwnSpectraRegression, ValuesThatTheProseRestsOn) {
-  std::map<std::string, std::string> values;
-  for (const auto& [name, text] : measured().values()) values[name] = text;
+  auto values = valuesOf(measured());
   EXPECT_EQ(values["narrow"], "1.0000");
   EXPECT_EQ(values["rectangular"], "0.9500");
   EXPECT_EQ(values["peak.nm"], "500");  // between blue and green

@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <set>
-#include <sstream>
 
-#include "Scratch.hpp"
-#include "program/Harness.hpp"
+#include "Items.hpp"
 
 using namespace malus;
 
@@ -56,21 +53,6 @@ double farthest(const std::array<double, 16>& a, const std::array<double, 16>& b
 Jones polarizerJones(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * c, c * s, c * s, s * s};
-}
-
-/// Runs an item on the committed printed values; its claims by verdict.
-std::set<std::string> named(const CDItem& item, CDVerdict verdict) {
-  std::set<std::string> names;
-  for (const CDClaim& claim : item.claims())
-    if (claim.verdict == verdict) names.insert(claim.name);
-  return names;
-}
-
-CDItem ran(const std::string& id, CDItemFunction function,
-           const std::string& data = "validation") {
-  CDItem item(id, "nowhere", data);
-  function(item);
-  return item;
 }
 }  // namespace
 
@@ -163,39 +145,13 @@ TEST(Section3Published, EverySlipIsProvedAndEq378StandsAsPrinted) {
     EXPECT_TRUE(named(item, CDVerdict::erratum).contains(slip)) << slip;
 }
 
-namespace {
-/// A copy of validation/printed with one text replaced by another in one file.
-struct Corrupted : Scratch {
-  Corrupted(const std::string& file, const std::string& from, const std::string& to) {
-    std::ifstream original("validation/printed/" + file);
-    std::stringstream read;
-    read << original.rdbuf();
-    std::string text = read.str();
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from << " in " << file;
-    text.replace(at, from.size(), to);
-    put(path / "printed" / file, sealTable(text, file));
-  }
-};
-}  // namespace
-
 TEST(Section3Published, NegativeControlACorruptedPrintIsSeen) {
   const Corrupted table("T3.2.csv", "vertical,1,-1,0,0", "vertical,1,-1,0,0.001");
-  EXPECT_EQ(named(ran("T3.2", reproduceT32, table.path.string()), CDVerdict::differs),
+  EXPECT_EQ(named(ran("T3.2", reproduceT32, table.data), CDVerdict::differs),
             (std::set<std::string>{"vertical"}));
   const Corrupted copper("N8-copper.csv", "0.3026,", "0.3036,");
   EXPECT_TRUE(
-      named(ran(
-                "N8",
-                [](CDItem& item) {
-                  try {
-                    reproduceN8(item);
-                  } catch (const CDInputError&) {  // the other printed file is not in the copy
-                  }
-                },
-                copper.path.string()),
-            CDVerdict::differs)
-          .contains("eq3.77"));
+      named(ran("N8", reproduceN8, copper.data), CDVerdict::differs).contains("eq3.77"));
 }
 
 TEST(Section3Published, NegativeControlAMissingPrintStopsTheItem) {

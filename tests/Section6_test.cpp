@@ -3,50 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <set>
 #include <string>
 
-#include "Scratch.hpp"
-#include "program/Harness.hpp"
+#include "Items.hpp"
 
 using namespace malus;
 
 namespace {
-std::set<std::string> named(const CDItem& item, CDVerdict verdict) {
-  std::set<std::string> names;
-  for (const CDClaim& claim : item.claims())
-    if (claim.verdict == verdict) names.insert(claim.name);
-  return names;
-}
-
-CDItem ran(const std::string& id, CDItemFunction function,
-           const std::string& data = "validation") {
-  CDItem item(id, "nowhere", data);
-  function(item);
-  return item;
-}
-
-/// The project with one text of validation/printed replaced by another, and the file sealed
-/// again.
-struct Corrupted : Scratch {
-  std::string data = (path / "validation").string();
-  Corrupted(const std::string& file, const std::string& from, const std::string& to) {
-    for (const char* folder : {"nw", "tests"})
-      std::filesystem::create_directory_symlink(std::filesystem::absolute(folder),
-                                                path / folder);
-    std::filesystem::create_directory(path / "validation");
-    std::filesystem::copy("validation/printed", path / "validation" / "printed",
-                          std::filesystem::copy_options::recursive);
-    const std::filesystem::path corrupted = path / "validation" / "printed" / file;
-    std::string text = contents(corrupted);
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from << " in " << file;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-    put(corrupted, sealTable(text, file));
-  }
-};
-
 const std::set<std::string> none;
 }  // namespace
 
