@@ -56,3 +56,6 @@ set style line 12 linecolor rgb '#808080' linewidth 1 dashtype (2,3)
 # zero-centred map for signed quantities (blue, white, vermillion), and a sequential one
 signed_map = 'set palette defined (-1 "#0072b2", 0 "#ffffff", 1 "#d55e00")'
 level_map = 'set palette defined (0 "#0b1f3a", 0.5 "#0072b2", 0.8 "#e69f00", 1 "#fff7d6")'
+# for images: intensity as in the thesis, and an angle that closes on itself
+grey_map = 'set palette defined (0 "#000000", 1 "#ffffff")'
+hue_map = 'set palette model HSV defined (0 0 0.7 0.9, 1 1 0.7 0.9); set palette model RGB'

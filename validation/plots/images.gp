@@ -1,0 +1,67 @@
+# Panels of simulated images with one stretch and one colour bar (images.csv, images-panels.csv).
+#
+# <pictures>-panels.csv: title,column,low,high,map,across,unit: a row for each panel, in reading order. map is grey,
+# level, signed or hue; across is the number of panels in a row; unit is the legend of the colour bar. Where not all
+# panels have one stretch and one map, each has a colour bar of its own.
+# <pictures>.csv: x,y and the columns named there; x counts pixels from the left, y rows from the top.
+if (!exists("pictures")) pictures = 'images'
+panels_file = pictures . '-panels.csv'
+set datafile separator ','
+set datafile columnheaders
+panels = 0
+array Title[64]; array Column[64]; array Low[64]; array High[64]; array Map[64]
+across = 1
+unit = ''
+stats panels_file using (panels = panels + 1, Title[panels] = strcol('title'), \
+  Column[panels] = strcol('column'), Low[panels] = column('low'), High[panels] = column('high'), \
+  Map[panels] = strcol('map'), across = column('across'), unit = strcol('unit'), 0) nooutput
+one_bar = 1
+do for [i = 2:panels] {
+  if (Low[i] != Low[1] || High[i] != High[1] || Map[i] ne Map[1]) { one_bar = 0 }
+}
+down = ceil(panels / real(across))
+panel = 190
+gap = one_bar ? 8 : 62
+bar = one_bar ? 110 : 10
+width = across * (panel + gap) + bar
+height = down * (panel + 26) + 8
+load style
+
+unset border
+unset grid
+unset key
+set xtics format ''
+unset xtics
+unset ytics
+set size ratio -1
+set yrange [*:*] reverse
+set multiplot
+do for [i = 1:panels] {
+  right = (i - 1) % int(across)
+  row = (i - 1) / int(across)
+  set lmargin at screen (right * (panel + gap) + 4.0) / width
+  set rmargin at screen (right * (panel + gap) + 4.0 + panel) / width
+  set tmargin at screen 1 - (row * (panel + 26) + 24.0) / height
+  set bmargin at screen 1 - (row * (panel + 26) + 24.0 + panel) / height
+  set title Title[i] font ',12' offset 0,-0.8
+  set cbrange [Low[i]:High[i]]
+  if (Map[i] eq 'signed') { @signed_map }
+  if (Map[i] eq 'level') { @level_map }
+  if (Map[i] eq 'grey') { @grey_map }
+  if (Map[i] eq 'hue') { @hue_map }
+  if (one_bar) {
+    unset colorbox
+    if (i == panels) {
+      set colorbox user origin screen (across * (panel + gap) + 8.0) / width, (12.0 / height) \
+        size screen 12.0 / width, (height - 44.0) / height
+      set cblabel unit offset 0.5,0
+    }
+  } else {
+    set colorbox user origin screen (right * (panel + gap) + panel + 8.0) / width, \
+      1 - (row * (panel + 26) + 24.0 + panel) / height size screen 8.0 / width, real(panel) / height
+    set cblabel ''
+  }
+  set cbtics font ',11' scale 0.5
+  plot pictures . '.csv' using 'x':'y':Column[i] with image
+}
+unset multiplot
