@@ -1,0 +1,101 @@
+// Meshes, their places and their door (nw/world/CDGeometry.nw).
+#include "world/CDGeometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "Scratch.hpp"
+#include "light/CDError.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double rounding = 1e-14;  // a few operations on numbers of size one
+
+const std::string square =
+    "# a square and a triangle\n"
+    "o box\ng top\nusemtl red\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n"
+    "g side\nusemtl blue\nf -4/1/1 -3/2/1 -1/3/1\n";
+
+CDMesh parsed(const std::string& text) {
+  const Scratch scratch;
+  put(scratch / "m.obj", text);
+  return readOBJ(scratch / "m.obj");
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parsed(text);
+  } catch (const CDInputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("m.obj"));
+  }
+  return "none";
+}
+
+CDSceneGeometry placed(const CDMesh& mesh, const CDTransform& place) {
+  CDGeometryBuilder builder;
+  builder.addMesh(mesh, place);
+  return std::move(builder).build();
+}
+}  // namespace
+
+TEST(CDGeometryIdentity, ReadsNamesFacesAndRelativeIndices) {
+  const CDMesh mesh = parsed(square);
+  ASSERT_EQ(mesh.triangles.size(), 3u);
+  EXPECT_EQ(mesh.facets, (std::vector<std::string>{"box.top", "box.side"}));
+  EXPECT_EQ(mesh.materials, (std::vector<std::string>{"red", "blue"}));
+  EXPECT_EQ(mesh.triangles[1].c, 3u);
+  EXPECT_EQ(mesh.triangles[2].a, 0u);
+  EXPECT_EQ(mesh.triangles[2].facet, 1u);
+}
+
+TEST(CDGeometryIdentity, BadMeshesNameTheLine) {
+  EXPECT_EQ(complaint("v 0 0 0\nv 1 nan 0\n").substr(0, 9), "m.obj:2: ");
+  EXPECT_NE(complaint("v 0 0 0\nv 1 x 0\n").find("vertex y"), std::string::npos);
+  EXPECT_NE(complaint("v 0 0\n").find("vertex z"), std::string::npos);
+  EXPECT_NE(complaint("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").find("9: names no vertex"),
+            std::string::npos);
+  EXPECT_NE(complaint("v 0 0 0\nv 1 0 0\nf 1 2\n").find("fewer than three"), std::string::npos);
+  EXPECT_NE(complaint("v 0 0 0\n").find("no faces"), std::string::npos);
+  EXPECT_EQ(complaint(square), "none");  // the negative control: a good mesh is not refused
+}
+
+TEST(CDGeometryIdentity, TransformsComposeInOrder) {
+  const CDTransform turn = CDTransform::rotate({0, 0, 1}, std::numbers::pi / 2);
+  const CDTransform move = CDTransform::translate({10, 0, 0});
+  const CDVector p = move.after(turn).apply({1, 0, 0}), q = turn.after(move).apply({1, 0, 0});
+  EXPECT_NEAR(p.x, 10, rounding * 10);
+  EXPECT_NEAR(p.y, 1, rounding * 10);
+  EXPECT_NEAR(q.x, 0, rounding * 20);
+  EXPECT_NEAR(q.y, 11, rounding * 20);
+}
+
+TEST(CDGeometryInvariant, MirroredMeshesKeepTheirOutside) {
+  const CDMesh mesh = parsed(square);
+  for (const double sx : {1.0, -1.0}) {
+    const CDSceneGeometry scene = placed(mesh, {{sx, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}});
+    for (const CDTriangle& t : scene.triangles()) EXPECT_NEAR(scene.normal(t).z, 1, rounding);
+  }
+}
+
+TEST(CDGeometryIdentity, TrianglesWithoutAreaAreCountedAndKeptOut) {
+  const CDMesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\nf 1 1 4\n");
+  const CDSceneGeometry scene = placed(mesh, {});
+  EXPECT_EQ(scene.triangles().size(), 1u);
+  EXPECT_EQ(scene.degenerateTriangles(), 2u);
+}
+
+TEST(CDGeometryIdentity, MaterialsAreRenamedByNameOrAllTogether) {
+  CDGeometryBuilder builder;
+  builder.addMesh(parsed(square), {}, "a.", {{"red", "copper"}});
+  builder.addMesh(parsed(square), CDTransform::translate({5, 0, 0}), "b.", {{"*", "soil"}});
+  builder.addGround(0, "soil", "ground");
+  EXPECT_THROW(builder.addGround(1, "soil", "ground"), CDMathError);
+  const CDSceneGeometry scene = std::move(builder).build();
+  EXPECT_EQ(scene.materialNames(), (std::vector<std::string>{"copper", "blue", "soil"}));
+  EXPECT_EQ(scene.facetNames().back(), "ground");
+  EXPECT_EQ(scene.facetNames()[2], "b.box.top");
+  EXPECT_EQ(scene.triangles()[3].a, 4u);
+}
