@@ -1,0 +1,157 @@
+// What rays meet (nw/imaging/CDRayTracer.nw), against a search through all triangles in double precision.
+#include "imaging/CDRayTracer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "light/CDError.hpp"
+#include "matter/BRDFSampling.hpp"
+
+using namespace malus;
+
+namespace {
+CDSceneGeometry pyramids(const CDVector& at, bool ground) {
+  CDMesh mesh;
+  mesh.name = "pyramids";
+  mesh.facets = {"a", "b", "c", "d"};
+  mesh.materials = {"stone"};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const CDVector c{i & 1 ? 2.0 : -2.0, i & 2 ? 2.0 : -2.0, 0};
+    const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [x, y] : {std::pair{-1.5, -1.5}, {1.5, -1.5}, {1.5, 1.5}, {-1.5, 1.5}})
+      mesh.vertices.push_back(c + CDVector{x, y, 0});
+    mesh.vertices.push_back(c + CDVector{0, 0, 1});
+    for (std::uint32_t k = 0; k < 4; ++k)
+      mesh.triangles.push_back({n + k, n + (k + 1) % 4, n + 4, i, 0});
+  }
+  CDGeometryBuilder builder;
+  builder.addMesh(mesh, CDTransform::translate(at));
+  if (ground) builder.addGround(at.z, "soil", "ground");
+  return std::move(builder).build();
+}
+
+/// Moeller and Trumbore, every triangle, in double precision: distance, or infinity.
+double search(const CDSceneGeometry& g, const CDVector& o, const CDVector& d, bool ground) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const CDTriangle& t : g.triangles()) {
+    const CDVector a = g.vertices()[t.a], e = g.vertices()[t.b] - a, f = g.vertices()[t.c] - a;
+    const CDVector p = cross(d, f);
+    const double det = dot(e, p);
+    if (std::abs(det) < 1e-12) continue;
+    const CDVector s = o - a, q = cross(s, e);
+    const double u = dot(s, p) / det, v = dot(d, q) / det, distance = dot(f, q) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && distance > 0) best = std::min(best, distance);
+  }
+  if (ground && d.z < 0) best = std::min(best, (g.ground()->z_m - o.z) / d.z);
+  return best;
+}
+
+CDVector randomDirection(CDRandom& random) {
+  const double z = 2 * random.uniform() - 1, a = 2 * M_PI * random.uniform(), r = std::sqrt(1 - z * z);
+  return {r * std::cos(a), r * std::sin(a), z};
+}
+}  // namespace
+
+// Distances agree to 1e-9 of themselves unless a ray passes an edge within single precision's reach.
+TEST(CDRayTracerIdentity, MeetsWhatASearchMeets) {
+  for (const CDVector& at : {CDVector{}, CDVector{500000, 4000000, 120}}) {
+    const CDSceneGeometry scene = pyramids(at, true);
+    const CDRayTracer tracer(scene);
+    CDRandom random(1);
+    int apart = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const CDVector o = at + CDVector{8 * random.uniform() - 4, 8 * random.uniform() - 4, 1.2 + random.uniform()};
+      const CDVector d = randomDirection(random);
+      const double expected = search(scene, o, d, true);
+      const CDHit hit = tracer.intersect(o, d);
+      ASSERT_EQ(bool(hit), std::isfinite(hit.t));
+      EXPECT_EQ(bool(hit), tracer.occluded(o, d));
+      if (hit) {
+        EXPECT_LT(dot(hit.normal, d), 0);
+      }
+      apart += !(hit.t == expected || std::abs(hit.t - expected) < 1e-8 * expected);
+    }
+    EXPECT_LE(apart, 4);
+  }
+}
+
+TEST(CDRayTracerIdentity, NegativeControlAScenesShiftIsSeen) {
+  const CDSceneGeometry scene = pyramids({}, false), moved = pyramids({0.01, 0, 0}, false);
+  const CDRayTracer tracer(scene);
+  CDRandom random(1);
+  int apart = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const CDVector o{4 * random.uniform() - 2, 4 * random.uniform() - 2, 2};
+    const double expected = search(moved, o, {0, 0, -1}, false), t = tracer.intersect(o, {0, 0, -1}).t;
+    apart += std::isfinite(expected) && std::abs(t - expected) > 1e-8;
+  }
+  EXPECT_GT(apart, 200);  // only the faces that look east or west see it
+}
+
+TEST(CDRayTracerInvariant, BundlesAnswerAsSingleRaysDo) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  CDRandom random(2);
+  for (int i = 0; i < 2000; ++i) {
+    CDRayBundle rays{};
+    rays.origin = {4 * random.uniform() - 2, 4 * random.uniform() - 2, 1.01};
+    rays.active = i % 3 == 0 ? 0xffffu : static_cast<std::uint32_t>(random() & 0xffff);
+    for (int k = 0; k < 16; ++k) {
+      const CDVector d = randomDirection(random);
+      rays.x[k] = float(d.x), rays.y[k] = float(d.y), rays.z[k] = float(d.z);
+    }
+    std::array<CDHit, 16> hits;
+    const std::uint32_t met = tracer.intersect(rays, hits), blocked = tracer.occluded(rays);
+    EXPECT_EQ(met, blocked);
+    EXPECT_EQ(met & ~rays.active, 0u);
+    for (int k = 0; k < 16; ++k) {
+      if (!(rays.active >> k & 1)) continue;
+      const CDHit one = tracer.intersect(rays.origin, {rays.x[k], rays.y[k], rays.z[k]});
+      EXPECT_EQ(bool(one), bool(met >> k & 1));
+      if (one) {
+        EXPECT_EQ(one.t, hits[k].t);
+      }
+    }
+  }
+}
+
+TEST(CDRayTracerInvariant, NothingLeaksBetweenTriangles) {
+  const CDSceneGeometry scene = pyramids({}, false);
+  const CDRayTracer tracer(scene);
+  for (int i = 0; i <= 1000; ++i) {  // down on the ridges that triangles share
+    const double t = 0.001 + 0.998 * i / 1000;
+    EXPECT_TRUE(tracer.intersect({-3.5 + 1.5 * t, -3.5 + 1.5 * t, 5}, {0, 0, -1})) << t;
+  }
+}
+
+TEST(CDRayTracerIdentity, AStartOffTheSurfaceDoesNotMeetIt) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  CDRandom random(3);
+  for (int i = 0; i < 5000; ++i) {
+    const CDHit hit = tracer.intersect({8 * random.uniform() - 4, 8 * random.uniform() - 4, 3}, {0, 0, -1});
+    const CDVector start = CDRayTracer::leave(hit.point, hit.normal);
+    EXPECT_FALSE(tracer.occluded(start, hit.normal));
+  }
+}
+
+TEST(CDRayTracerIdentity, NotANumberIsRefused) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  const double nan = std::nan("");
+  EXPECT_THROW(tracer.intersect({0, 0, nan}, {0, 0, -1}), CDMathError);
+  EXPECT_THROW(tracer.occluded({0, 0, 1}, {nan, 0, -1}), CDMathError);
+  CDRayBundle rays{};
+  rays.active = 2, rays.x[1] = float(nan);
+  EXPECT_THROW(tracer.occluded(rays), CDMathError);
+  rays.active = 1, rays.z[0] = 1;  // the lane that is not a number does not take part
+  EXPECT_NO_THROW(tracer.occluded(rays));
+}
+
+TEST(CDRayTracerIdentity, AnEmptyWorldIsAllSky) {
+  const CDSceneGeometry nothing = CDGeometryBuilder().build();
+  const CDRayTracer tracer(nothing);
+  EXPECT_FALSE(tracer.intersect({}, {0, 0, -1}));
+}
