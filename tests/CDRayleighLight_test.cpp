@@ -2,11 +2,11 @@
 #include "world/CDRayleighLight.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <rapidcheck/gtest.h>
 #include <string>
 
 #include "light/CDTable.hpp"
@@ -30,9 +30,18 @@ std::vector<Printed> printedValues() {
   std::vector<Printed> all;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto number = [&](const char* column) { return table.number(row, column); };
-    all.push_back({number("tau"), number("rho_depol"), number("albedo"), number("F0"), number("mu0"), number("mu"),
-                   number("phi_deg") * degree, number("tau_obs"), {number("I"), number("Q"), number("U")},
-                   number("tol_abs"), table.cell(row, "dir") == "UP", table.cell(row, "source")});
+    all.push_back({number("tau"),
+                   number("rho_depol"),
+                   number("albedo"),
+                   number("F0"),
+                   number("mu0"),
+                   number("mu"),
+                   number("phi_deg") * degree,
+                   number("tau_obs"),
+                   {number("I"), number("Q"), number("U")},
+                   number("tol_abs"),
+                   table.cell(row, "dir") == "UP",
+                   table.cell(row, "source")});
   }
   return all;
 }
@@ -41,8 +50,10 @@ CDStokesVector computed(const Printed& p, double phi_sign = 1) {
   const CDRayleighAtmosphere air(p.depth, p.rho);
   const CDRayleighLight light(air, p.sun, p.albedo, p.irradiance);
   const Azimuth azimuth = Azimuth::fromRadians(phi_sign * p.phi);
-  const CDStokesVector value = p.up ? light.up(p.view, azimuth, p.observer) : light.down(p.view, azimuth, p.observer);
-  return convertSky(value, CDSkyConvention::malus, CDSkyConvention::iprt);  // the file's convention
+  const CDStokesVector value =
+      p.up ? light.up(p.view, azimuth, p.observer) : light.down(p.view, azimuth, p.observer);
+  return convertSky(value, CDSkyConvention::malus,
+                    CDSkyConvention::iprt);  // the file's convention
 }
 
 double worst(const CDStokesVector& ours, const Printed& p) {
@@ -59,7 +70,8 @@ TEST(CDRayleighLightPublished, EveryPrintedValue) {
   int natraj = 0, iprt = 0, with_u = 0;
   for (const Printed& p : all) {
     const bool eight_digits = p.source == "natraj2009";
-    EXPECT_LT(worst(computed(p), p), eight_digits ? 6e-9 : p.tolerance) << p.source << " tau " << p.depth << " mu0 " << p.sun << " mu " << p.view;
+    EXPECT_LT(worst(computed(p), p), eight_digits ? 6e-9 : p.tolerance)
+        << p.source << " tau " << p.depth << " mu0 " << p.sun << " mu " << p.view;
     ++(eight_digits ? natraj : iprt), with_u += p.value[2] != 0;
   }
   EXPECT_EQ(natraj, 40);
@@ -76,24 +88,30 @@ TEST(CDRayleighLightPublished, NegativeControlTheOtherAzimuthHasTheOtherU) {
 
 // The two ways of integrating along the line must agree: they share nothing but the solution's nodes.
 RC_GTEST_PROP(CDRayleighLightInvariant, BothWaysAlongTheLineAgree, ()) {
-  const double depth = std::pow(10.0, *rc::gen::inRange(-40, 4) / 10.0), sun = *rc::gen::inRange(5, 101) / 100.0;
+  const double depth = std::pow(10.0, *rc::gen::inRange(-40, 4) / 10.0),
+               sun = *rc::gen::inRange(5, 101) / 100.0;
   const double view = *rc::gen::inRange(2, 101) / 100.0;
   const Azimuth azimuth = Azimuth::fromRadians(*rc::gen::inRange(0, 628) / 100.0);
   const CDRayleighLight light(CDRayleighAtmosphere(depth, 0.03), sun, 0.3, pi);
   for (int k = 0; k < 3; ++k) {
     // the solution's own accuracy at these angles, see the chapter
-    RC_ASSERT(std::abs(light.down(view, azimuth).getStokes(k) - light.down(view, azimuth, depth).getStokes(k)) < 3e-8);
-    RC_ASSERT(std::abs(light.up(view, azimuth).getStokes(k) - light.up(view, azimuth, 0).getStokes(k)) < 3e-8);
+    RC_ASSERT(std::abs(light.down(view, azimuth).getStokes(k) -
+                       light.down(view, azimuth, depth).getStokes(k)) < 3e-8);
+    RC_ASSERT(std::abs(light.up(view, azimuth).getStokes(k) -
+                       light.up(view, azimuth, 0).getStokes(k)) < 3e-8);
   }
 }
 
 RC_GTEST_PROP(CDRayleighLightInvariant, EnergyIsBalanced, ()) {
-  const double depth = std::pow(10.0, *rc::gen::inRange(-40, 4) / 10.0), sun = *rc::gen::inRange(5, 101) / 100.0;
+  const double depth = std::pow(10.0, *rc::gen::inRange(-40, 4) / 10.0),
+               sun = *rc::gen::inRange(5, 101) / 100.0;
   const double albedo = *rc::gen::inRange(0, 11) / 10.0, rho = *rc::gen::inRange(0, 10) / 100.0;
   const CDRayleighLight light(CDRayleighAtmosphere(depth, rho), sun, albedo, pi);
-  const double brought = sun * pi, absorbed = (1 - albedo) * (light.directFlux() + light.diffuseDown());
+  const double brought = sun * pi,
+               absorbed = (1 - albedo) * (light.directFlux() + light.diffuseDown());
   RC_ASSERT(std::abs(brought - absorbed - light.diffuseUp()) < 1e-8);  // as above, times pi
-  RC_ASSERT(std::abs(brought - absorbed * 1.001 - light.diffuseUp()) > 1e-8 || albedo == 1);  // control
+  RC_ASSERT(std::abs(brought - absorbed * 1.001 - light.diffuseUp()) > 1e-8 ||
+            albedo == 1);  // control
 }
 
 // White ground under ordinary suns: the demanded 1e-10.
@@ -116,8 +134,12 @@ TEST(CDRayleighLightInvariant, FluxIsTheIntegralOfRadiance) {
   for (int i = 0; i <= steps; ++i) {
     const double x = static_cast<double>(i) / steps, mu = x * x;  // mu dmu = 2 x^3 dx
     double mean = 0;
-    for (int j = 0; j < 4; ++j) mean += light.down(mu, Azimuth::fromRadians(pi / 4 + j * pi / 2)).getScalar() / 4;
-    flux += (i == 0 || i == steps ? 1.0 : i % 2 ? 4.0 : 2.0) / (3 * steps) * mean * 2 * x * x * x;
+    for (int j = 0; j < 4; ++j)
+      mean += light.down(mu, Azimuth::fromRadians(pi / 4 + j * pi / 2)).getScalar() / 4;
+    flux += (i == 0 || i == steps ? 1.0
+             : i % 2              ? 4.0
+                                  : 2.0) /
+            (3 * steps) * mean * 2 * x * x * x;
   }
   EXPECT_NEAR(2 * pi * flux, light.diffuseDown(), 1e-8);
 }
@@ -133,24 +155,30 @@ TEST(CDRayleighLightIdentity, ThinAirScattersOnce) {
       const double s = std::sqrt(1 - cosine * cosine);
       return CDVector{s * std::cos(azimuth), -s * std::sin(azimuth), -cosine};
     };
-    const CDRayFrame beam = rayFrame(travel(sun, 0), {0, 0, 1}), line = rayFrame(travel(view, phi * degree), {0, 0, 1});
+    const CDRayFrame beam = rayFrame(travel(sun, 0), {0, 0, 1}),
+                     line = rayFrame(travel(view, phi * degree), {0, 0, 1});
     double s[3]{};
     for (const CDVector& field : {beam.s, beam.p}) {
       const double a = dot(field, line.s), b = dot(field, line.p);
       s[0] += a * a + b * b, s[1] += a * a - b * b, s[2] += 2 * a * b;
     }
-    const double path = (std::exp(-depth / sun) - std::exp(-depth / view)) / (1 / view - 1 / sun) / view;
+    const double path =
+        (std::exp(-depth / sun) - std::exp(-depth / view)) / (1 / view - 1 / sun) / view;
     const CDStokesVector sky = light.down(view, Azimuth::fromRadians(phi * degree));
     for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(sky.getStokes(k), 3 / (16 * pi) * s[k] * path, 20 * depth * 3 / (16 * pi) * path) << phi << ' ' << k;
-    EXPECT_GT(std::abs(sky.getStokes(0) - 3 / (16 * pi) * s[0] * path * 1.01), 20 * depth * 3 / (16 * pi) * path);
+      EXPECT_NEAR(sky.getStokes(k), 3 / (16 * pi) * s[k] * path,
+                  20 * depth * 3 / (16 * pi) * path)
+          << phi << ' ' << k;
+    EXPECT_GT(std::abs(sky.getStokes(0) - 3 / (16 * pi) * s[0] * path * 1.01),
+              20 * depth * 3 / (16 * pi) * path);
   }
 }
 
 // Helmholtz: exchange sun and viewer of the light that leaves the top, turn the Stokes vector's S2
 // (the axes p of the two rays are mirror images), and the intensity is the same.
 RC_GTEST_PROP(CDRayleighLightInvariant, SunAndViewerMayBeExchanged, ()) {
-  const double depth = *rc::gen::inRange(1, 20) / 10.0, a = *rc::gen::inRange(10, 101) / 100.0, b = *rc::gen::inRange(10, 101) / 100.0;
+  const double depth = *rc::gen::inRange(1, 20) / 10.0, a = *rc::gen::inRange(10, 101) / 100.0,
+               b = *rc::gen::inRange(10, 101) / 100.0;
   const Azimuth azimuth = Azimuth::fromRadians(*rc::gen::inRange(0, 314) / 100.0);
   const CDRayleighAtmosphere air(depth, 0.03);
   // reflected radiance is (cosine of the sun) x irradiance x a symmetric function
@@ -172,14 +200,21 @@ TEST(CDRayleighLightInvariant, TheNetFluxDoesNotDependOnDepth) {
       double mean = 0;
       for (int j = 0; j < 4; ++j) {
         const Azimuth azimuth = Azimuth::fromRadians(pi / 4 + j * pi / 2);
-        mean += (light.down(mu, azimuth, depth).getScalar() - light.up(mu, azimuth, depth).getScalar()) / 4;
+        mean += (light.down(mu, azimuth, depth).getScalar() -
+                 light.up(mu, azimuth, depth).getScalar()) /
+                4;
       }
-      flux += 2 * pi * (i == 0 || i == steps ? 1.0 : i % 2 ? 4.0 : 2.0) / (3 * steps) * mean * 2 * x * x * x;
+      flux += 2 * pi *
+              (i == 0 || i == steps ? 1.0
+               : i % 2              ? 4.0
+                                    : 2.0) /
+              (3 * steps) * mean * 2 * x * x * x;
     }
     return flux;
   };
   const double top = 0.7 * pi - light.diffuseUp();
-  for (const double depth : {0.0, 0.1, 0.25, 0.5}) EXPECT_NEAR(net(depth), top, 2e-6) << depth;  // Simpson, mu ln mu
+  for (const double depth : {0.0, 0.1, 0.25, 0.5})
+    EXPECT_NEAR(net(depth), top, 2e-6) << depth;  // Simpson, mu ln mu
 }
 
 // A method without any integral equation: photons with fields as vectors. Each photon carries a unit
@@ -206,9 +241,11 @@ TEST(CDRayleighLightInvariant, PhotonsFollowedOneByOneAgree) {
       // horizontal area the flux is sun * 1, and radiance divides by the cosine of the line
       const double w = weight * sun * 3 / (8 * pi) * std::exp(-(depth - t) / view) / view;
       const double a = dot(field, seen.s), b = dot(field, seen.p);
-      score[0] += w * (a * a + b * b), score[1] += w * (a * a - b * b), score[2] += w * 2 * a * b;
+      score[0] += w * (a * a + b * b), score[1] += w * (a * a - b * b),
+          score[2] += w * 2 * a * b;
       for (;;) {  // rejection: |n x E|^2 = 1 - (n.E)^2
-        const double z = 2 * uniform(engine) - 1, r = std::sqrt(1 - z * z), angle = 2 * pi * uniform(engine);
+        const double z = 2 * uniform(engine) - 1, r = std::sqrt(1 - z * z),
+                     angle = 2 * pi * uniform(engine);
         k = {r * std::cos(angle), r * std::sin(angle), z};
         if (uniform(engine) < 1 - dot(k, field) * dot(k, field)) break;
       }
@@ -219,18 +256,21 @@ TEST(CDRayleighLightInvariant, PhotonsFollowedOneByOneAgree) {
     for (int i = 0; i < 3; ++i) sum[i] += score[i], squares[i] += score[i] * score[i];
   }
   for (int i = 0; i < 3; ++i) {
-    const double mean = sum[i] / photons, error = std::sqrt((squares[i] / photons - mean * mean) / photons);
+    const double mean = sum[i] / photons,
+                 error = std::sqrt((squares[i] / photons - mean * mean) / photons);
     EXPECT_NEAR(mean, expected.getStokes(i), 4 * error) << i;  // three comparisons, fixed seed
     EXPECT_LT(error, 0.01 * expected.getScalar());
   }
 }
 
 TEST(CDRayleighLightInvariant, RefusesTheImpossible) {
-  for (const double depth : {0.0, -1.0, 17.0, std::nan("")}) EXPECT_THROW(CDRayleighAtmosphere{depth}, CDMathError);
+  for (const double depth : {0.0, -1.0, 17.0, std::nan("")})
+    EXPECT_THROW(CDRayleighAtmosphere{depth}, CDMathError);
   EXPECT_THROW(CDRayleighAtmosphere(0.1, 1), CDMathError);
   EXPECT_THROW(CDRayleighAtmosphere(0.1, -0.1), CDMathError);
   const CDRayleighAtmosphere air(0.1);
-  for (const double sun : {0.0, -0.1, 1.1, std::nan("")}) EXPECT_THROW(CDRayleighLight(air, sun, 0, 1), CDMathError);
+  for (const double sun : {0.0, -0.1, 1.1, std::nan("")})
+    EXPECT_THROW(CDRayleighLight(air, sun, 0, 1), CDMathError);
   EXPECT_THROW(CDRayleighLight(air, 0.5, 1.01, 1), CDMathError);
   EXPECT_THROW(CDRayleighLight(air, 0.5, 0, -1), CDMathError);
   const CDRayleighLight light(air, 0.5, 0.2, 1);

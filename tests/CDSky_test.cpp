@@ -44,7 +44,7 @@ CDStokesVector rayleigh(const CDVector& to_sky, const CDVector& to_sun) {
 }
 
 const double sun_azimuth_deg = 212;
-const CDVector to_sun = compassDirection(40 * degree, sun_azimuth_deg * degree);
+const CDVector to_sun = compassDirection(40 * degree, sun_azimuth_deg* degree);
 
 // The analytic sky written to a table; the literature's components are made from its definitions:
 // l = e_theta and r = e_phi of the direction of travel, phi clockwise from the sunbeam's.
@@ -52,7 +52,8 @@ std::string written(CDSkyConvention convention, double u_sign = 1, double step =
   const bool ours = convention == CDSkyConvention::malus;
   std::string text = fmt::format("# convention: {}\n", nameOf(convention));
   if (!ours) text += fmt::format("# sun_azimuth_deg: {}\n", sun_azimuth_deg);
-  text += ours ? "zenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2,S3\n" : "zenith_deg,phi_deg,wavelength_nm,I,Q,U,V\n";
+  text += ours ? "zenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2,S3\n"
+               : "zenith_deg,phi_deg,wavelength_nm,I,Q,U,V\n";
   for (double zenith = 0; zenith <= 90; zenith += step)
     for (double azimuth = 0; azimuth < 360; azimuth += step) {
       const double compass = azimuth + (ours ? 0 : sun_azimuth_deg);
@@ -65,7 +66,8 @@ std::string written(CDSkyConvention convention, double u_sign = 1, double step =
       } else {
         const CDVector k = -d;
         const CDVector r = normalized(cross(k, up));  // clockwise azimuth of travel
-        const CDVector l = cross(r, k) * (cross(r, k).z < 0 ? 1 : -1);  // larger zenith angle of travel: down
+        const CDVector l =
+            cross(r, k) * (cross(r, k).z < 0 ? 1 : -1);  // larger zenith angle of travel: down
         q = u = 0;
         const CDRayFrame beam = rayFrame(-to_sun, up);
         for (const CDVector& field : {beam.s, beam.p}) {
@@ -75,14 +77,16 @@ std::string written(CDSkyConvention convention, double u_sign = 1, double step =
         }
       }
       for (const double nm : {400.0, 600.0})
-        text += fmt::format("{},{},{},{},{},{},0\n", zenith, azimuth, nm, i * nm, q * nm, u_sign * u * nm);
+        text += fmt::format("{},{},{},{},{},{},0\n", zenith, azimuth, nm, i * nm, q * nm,
+                            u_sign * u * nm);
     }
   return text;
 }
 
 std::unique_ptr<CDTableSky> skyOf(const std::string& text, double nm = 500) {
   std::istringstream stream(text);
-  return std::make_unique<CDTableSky>(CDTable::parse(stream, "sky.csv"), CDSpectralGrid::make({nm}));
+  return std::make_unique<CDTableSky>(CDTable::parse(stream, "sky.csv"),
+                                      CDSpectralGrid::make({nm}));
 }
 std::string messageOf(const std::string& text, double nm = 500) {
   try {
@@ -125,7 +129,8 @@ TEST(CDSkyInvariant, ThreeConventionsAreOneSky) {
   for (double zenith = 5; zenith <= 90; zenith += 5)
     for (double azimuth = 0; azimuth < 360; azimuth += 5) {
       const CDVector ours_d = compassDirection(zenith * degree, azimuth * degree);
-      const CDVector theirs_d = compassDirection(zenith * degree, (sun_azimuth_deg + azimuth) * degree);
+      const CDVector theirs_d =
+          compassDirection(zenith * degree, (sun_azimuth_deg + azimuth) * degree);
       EXPECT_LT(distance(ask(*ours, ours_d), rayleigh(ours_d, to_sun) * 500.0), 1e-9);
       EXPECT_LT(distance(ask(*natraj, theirs_d), rayleigh(theirs_d, to_sun) * 500.0), 1e-9);
       EXPECT_LT(distance(ask(*iprt, theirs_d), rayleigh(theirs_d, to_sun) * 500.0), 1e-9);
@@ -143,7 +148,8 @@ TEST(CDSkyInvariant, LightScatteredOnceIsPolarisedAcrossThePlaneOfScattering) {
   const CDVector d = compassDirection(60 * degree, (sun_azimuth_deg + 75) * degree);
   const CDStokesVector light = ask(*sky, d);
   const CDRayFrame frame = rayFrame(-d, up);
-  const CDVector field = std::cos(light.getAoLP()) * frame.s + std::sin(light.getAoLP()) * frame.p;
+  const CDVector field =
+      std::cos(light.getAoLP()) * frame.s + std::sin(light.getAoLP()) * frame.p;
   EXPECT_NEAR(dot(field, to_sun), 0, 1e-6);  // AoLP from decimal numbers; d is a node
 }
 
@@ -166,19 +172,22 @@ TEST(CDSkyInvariant, InterpolationErrsAsTheStepSquared) {
 
 TEST(CDSkyIdentity, TheZenithHasTheAxesOfTheFrame) {
   const auto sky = skyOf(written(CDSkyConvention::malus));
-  EXPECT_LT(distance(ask(*sky, up), rayleigh(up, to_sun) * 500.0), 1e-3);  // rows 1e-7 deg off the zenith
+  EXPECT_LT(distance(ask(*sky, up), rayleigh(up, to_sun) * 500.0),
+            1e-3);  // rows 1e-7 deg off the zenith
 }
 
 TEST(CDSkyIdentity, BlackBelowTheHorizonAndAroundTheSeam) {
   const auto sky = skyOf(written(CDSkyConvention::malus));
   EXPECT_EQ(ask(*sky, normalized({1, 0, -0.01})).getScalar(), 0);
-  const CDVector left = compassDirection(1, 359.999999 * degree), right = compassDirection(1, 1e-6 * degree);
+  const CDVector left = compassDirection(1, 359.999999 * degree),
+                 right = compassDirection(1, 1e-6 * degree);
   EXPECT_LT(distance(ask(*sky, left), ask(*sky, right)), 1e-3);
 }
 
 TEST(CDSkyIdentity, ATableWithoutPolarisationIsAnUnpolarisedSky) {
   std::string text = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n";
-  for (const char* zenith : {"0", "90"}) text += fmt::format("{},0,500,{}\n", zenith, zenith[0] == '0' ? 1 : 3);
+  for (const char* zenith : {"0", "90"})
+    text += fmt::format("{},0,500,{}\n", zenith, zenith[0] == '0' ? 1 : 3);
   const auto sky = skyOf(text);
   EXPECT_FALSE(sky->polarized());
   EXPECT_NEAR(ask(*sky, compassDirection(45 * degree, 1)).getScalar(), 2, 1e-12);
@@ -195,16 +204,37 @@ TEST(CDSkyInvariant, RefusesWithASentence) {
   const std::string missing = messageOf(without(good, "# convention"));
   for (const char* choice : {"convention", "malus", "natraj", "iprt"})
     EXPECT_NE(missing.find(choice), std::string::npos) << missing;
-  EXPECT_NE(messageOf("# convention: modtran\n" + without(good, "# convention")).find("modtran"), std::string::npos);
-  EXPECT_NE(messageOf(without(good, "60,90,600")).find("no row for zenith 60 deg, azimuth 90 deg, 600 nm"), std::string::npos);
+  EXPECT_NE(
+      messageOf("# convention: modtran\n" + without(good, "# convention")).find("modtran"),
+      std::string::npos);
+  EXPECT_NE(messageOf(without(good, "60,90,600"))
+                .find("no row for zenith 60 deg, azimuth 90 deg, 600 nm"),
+            std::string::npos);
   EXPECT_NE(messageOf(good + "60,90,600,1,0,0,0\n").find("repeats"), std::string::npos);
   EXPECT_NE(messageOf(good, 700).find("does not cover the band at 700 nm"), std::string::npos);
   EXPECT_NE(messageOf(good + "60,95,600,-1,0,0,0\n").find("no row"), std::string::npos);
-  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n").find("empty"), std::string::npos);
-  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,1\n80,0,500,1\n").find("0 to 80 deg"), std::string::npos);
-  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,-1\n90,0,500,1\n").find("negative"), std::string::npos);
-  EXPECT_NE(messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n0,0,500,1,1,1\n90,0,500,1,0,0\n").find("exceeds one"), std::string::npos);
-  EXPECT_NE(messageOf("# convention: iprt\nzenith_deg,phi_deg,wavelength_nm,I\n0,0,500,1\n90,0,500,1\n").find("sun_azimuth_deg"), std::string::npos);
+  EXPECT_NE(
+      messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n").find("empty"),
+      std::string::npos);
+  EXPECT_NE(messageOf("# convention: "
+                      "malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,1\n80,0,500,1\n")
+                .find("0 to 80 deg"),
+            std::string::npos);
+  EXPECT_NE(
+      messageOf("# convention: "
+                "malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n0,0,500,-1\n90,0,500,1\n")
+          .find("negative"),
+      std::string::npos);
+  EXPECT_NE(messageOf("# convention: "
+                      "malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n0,0,500,1,1,1\n90,"
+                      "0,500,1,0,0\n")
+                .find("exceeds one"),
+            std::string::npos);
+  EXPECT_NE(
+      messageOf(
+          "# convention: iprt\nzenith_deg,phi_deg,wavelength_nm,I\n0,0,500,1\n90,0,500,1\n")
+          .find("sun_azimuth_deg"),
+      std::string::npos);
 }
 
 // The default sampler: the mean of z over its density must be what the density says. With n draws of
@@ -228,8 +258,10 @@ TEST(CDSkyInvariant, DrawsUniformlyFromTheUpperHemisphere) {
 // Two halves of a path are the whole path; no path changes nothing; a very long one forgets the scene.
 RC_GTEST_PROP(CDAtmosphereInvariant, HazeComposes, ()) {
   const auto grid = CDSpectralGrid::make({500.0});
-  const double beta = *rc::gen::inRange(0, 1000) * 1e-5, split = *rc::gen::inRange(0, 100) * 0.01;
-  const CDUniformHaze haze(CDSpectralVector<double>(grid, beta), CDSpectralVector<double>(grid, 0.2));
+  const double beta = *rc::gen::inRange(0, 1000) * 1e-5,
+               split = *rc::gen::inRange(0, 100) * 0.01;
+  const CDUniformHaze haze(CDSpectralVector<double>(grid, beta),
+                           CDSpectralVector<double>(grid, 0.2));
   const CDVector a{0, 0, 0}, b{300, 400, 1200}, middle = a + split * (b - a);
   Spectrum whole(grid, CDStokesVector(1, 0.3, -0.2, 0.1)), halves = whole, none = whole;
   haze.apply(a, b, whole);
@@ -248,5 +280,6 @@ TEST(CDAtmosphereInvariant, HazeRefusesNonsense) {
   using Numbers = CDSpectralVector<double>;
   EXPECT_THROW(CDUniformHaze(Numbers(grid, -1.0), Numbers(grid, 0.0)), CDMathError);
   EXPECT_THROW(CDUniformHaze(Numbers(grid, 1.0), Numbers(grid, std::nan(""))), CDMathError);
-  EXPECT_THROW(CDUniformHaze(Numbers(grid, 1.0), Numbers(CDSpectralGrid::make({501.0}), 1.0)), CDGridError);
+  EXPECT_THROW(CDUniformHaze(Numbers(grid, 1.0), Numbers(CDSpectralGrid::make({501.0}), 1.0)),
+               CDGridError);
 }

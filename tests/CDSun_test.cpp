@@ -2,10 +2,10 @@
 #include "world/CDSun.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <numbers>
-#include <rapidcheck/gtest.h>
 
 #include "Scratch.hpp"
 
@@ -24,7 +24,8 @@ bool near(double a, double b, double tolerance) { return std::abs(a - b) <= tole
 // 0.7 s apart, which moves the sun by 1e-5 deg; the observer's height is left out by us (1e-7);
 // sidereal times differ by the linear or cubic form of their polynomial, below 1e-4 deg.
 TEST(CDSunPublished, NrelWorkedExample) {
-  const CDSolarPosition sun = solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:30-07:00"));
+  const CDSolarPosition sun =
+      solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:30-07:00"));
   EXPECT_NEAR(sun.zenith_rad / degree, 50.11162 + 0.01633, 1e-4);
   EXPECT_NEAR(sun.azimuth_rad / degree, 194.34024, 2e-4);
   EXPECT_NEAR(sun.declination_rad / degree, -9.31434, 2e-5);
@@ -32,9 +33,11 @@ TEST(CDSunPublished, NrelWorkedExample) {
 }
 
 TEST(CDSunPublished, NegativeControlTwoSecondsLater) {
-  const CDSolarPosition sun = solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:30-07:00"));
+  const CDSolarPosition sun =
+      solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:30-07:00"));
   // the tolerance is fine enough to see two seconds of time
-  const CDSolarPosition later = solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:32-07:00"));
+  const CDSolarPosition later =
+      solarPosition(39.742476, -105.1786, at("2003-10-17T12:30:32-07:00"));
   EXPECT_FALSE(near(later.azimuth_rad / degree, 194.34024, 2e-4));
   EXPECT_NE(sun.zenith_rad, later.zenith_rad);
 }
@@ -58,8 +61,9 @@ TEST(CDSunPublished, TheThesissSunStandsOverRochester) {
     const CDMoment midnight = at("2001-01-01T00:00:00Z").later(86400.0 * day);
     for (int step = 0; step < 30; ++step) {
       const double middle = (early + late) / 2;
-      const bool past = solarPosition(43.16, -77.61, midnight.later(3600 * middle)).azimuth_rad >
-                        175.66 * degree;
+      const bool past =
+          solarPosition(43.16, -77.61, midnight.later(3600 * middle)).azimuth_rad >
+          175.66 * degree;
       (past ? late : early) = middle;
     }
     const CDSolarPosition sun = solarPosition(43.16, -77.61, midnight.later(3600 * early));
@@ -75,11 +79,13 @@ TEST(CDSunPublished, TheThesissSunStandsOverRochester) {
 
 TEST(CDSunIdentity, CompassAnglesAndVectors) {
   EXPECT_NEAR((compassDirection(90 * degree, 0) - CDVector{0, 1, 0}).getLength(), 0, 1e-15);
-  EXPECT_NEAR((compassDirection(90 * degree, 90 * degree) - CDVector{1, 0, 0}).getLength(), 0, 1e-15);
+  EXPECT_NEAR((compassDirection(90 * degree, 90 * degree) - CDVector{1, 0, 0}).getLength(), 0,
+              1e-15);
   EXPECT_NEAR((compassDirection(0, 1) - CDVector{0, 0, 1}).getLength(), 0, 1e-15);
   for (const double azimuth : {0.0, 0.3, 2.0, 3.2, 6.2})
     EXPECT_NEAR(compassAzimuth_rad(compassDirection(0.4, azimuth)), azimuth, 1e-15);
-  EXPECT_FALSE(near(compassAzimuth_rad(compassDirection(0.4, 2.0)), 2.1, 1e-15));  // negative control
+  EXPECT_FALSE(
+      near(compassAzimuth_rad(compassDirection(0.4, 2.0)), 2.1, 1e-15));  // negative control
 }
 
 TEST(CDSunIdentity, MomentsInTwoZonesAreOne) {
@@ -92,9 +98,10 @@ TEST(CDSunIdentity, MomentsInTwoZonesAreOne) {
 }
 
 TEST(CDSunInvariant, RefusesWhatIsNoTime) {
-  for (const char* text : {"", "2001-06-10", "2001-06-10T17:06:00", "2001-02-29T00:00:00Z", "2001-06-10T24:00:00Z",
-                           "2001-06-10T17:60:00Z", "2001-06-10T17:06:60Z", "2001-06-10T17:06:00-15:00",
-                           "10.6.2001 17:06Z", "2001-06-10T17:06:00Zx"})
+  for (const char* text :
+       {"", "2001-06-10", "2001-06-10T17:06:00", "2001-02-29T00:00:00Z", "2001-06-10T24:00:00Z",
+        "2001-06-10T17:60:00Z", "2001-06-10T17:06:60Z", "2001-06-10T17:06:00-15:00",
+        "10.6.2001 17:06Z", "2001-06-10T17:06:00Zx"})
     EXPECT_THROW(at(text), CDInputError) << text;
   EXPECT_NO_THROW(at("2004-02-29T00:00:00Z"));
 }
@@ -114,7 +121,8 @@ RC_GTEST_PROP(CDSunInvariant, TheSunIsOneDirectionInSpaceForAllPlaces, ()) {
   const CDMoment moment = at("2001-01-01T00:00:00Z").later(*rc::gen::inRange(0, 365 * 86400));
   const auto height = [&](double latitude, double lon) {
     const CDSolarPosition sun = solarPosition(latitude, lon, moment);
-    return std::cos(sun.zenith_rad - 8.794 / 3600 * degree * std::sin(sun.zenith_rad) / sun.distance_au);
+    return std::cos(sun.zenith_rad -
+                    8.794 / 3600 * degree * std::sin(sun.zenith_rad) / sun.distance_au);
   };
   const auto wrapped = [](double lon) { return lon >= 180 ? lon - 360 : lon; };
   const double x = height(0, 0), y = height(0, 90), z = height(90, 0);
@@ -139,8 +147,10 @@ TEST(CDSunPublished, ExtraterrestrialIrradiance) {
   const CDSpectralVector<CDStokesVector> sun = solarIrradiance(grid);
   const double printed[]{1.996, 1.873, 1.589, 1.408};
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(std::as_const(sun)[i].getScalar(), printed[i], 0.0005 + 1e-12) << i;  // last digit
-    EXPECT_FALSE(near(std::as_const(sun)[i].getScalar(), printed[i] * 1.001, 0.0005));  // control
+    EXPECT_NEAR(std::as_const(sun)[i].getScalar(), printed[i], 0.0005 + 1e-12)
+        << i;  // last digit
+    EXPECT_FALSE(
+        near(std::as_const(sun)[i].getScalar(), printed[i] * 1.001, 0.0005));  // control
   }
   EXPECT_FALSE(sun.anyPolarized());
   const CDSpectralVector<CDStokesVector> far = solarIrradiance(grid, 2);
@@ -152,12 +162,16 @@ TEST(CDSunInvariant, RefusesBandsBeyondTheSpectrum) {
   EXPECT_THROW(solarIrradiance(CDSpectralGrid::make({1101.0})), CDInputError);
   const Scratch scratch;
   put(scratch / "sun.csv", "wavelength_nm,irradiance_W_m2_nm\n400,1\n500,-1\n");
-  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})), CDInputError);
+  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})),
+               CDInputError);
   put(scratch / "sun.csv", "wavelength_nm,irradiance_W_m2_nm\n400,1\n400,2\n500,1\n");
-  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})), CDInputError);
+  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})),
+               CDInputError);
   put(scratch / "sun.csv", "wavelength_nm,irradiance_W_m2_nm\n");
-  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})), CDInputError);
-  EXPECT_THROW(readSolarIrradiance(scratch / "none.csv", CDSpectralGrid::make({450.0})), CDInputError);
+  EXPECT_THROW(readSolarIrradiance(scratch / "sun.csv", CDSpectralGrid::make({450.0})),
+               CDInputError);
+  EXPECT_THROW(readSolarIrradiance(scratch / "none.csv", CDSpectralGrid::make({450.0})),
+               CDInputError);
 }
 
 TEST(CDSunInvariant, IrradianceIsInterpolatedInWavelength) {
@@ -171,10 +185,12 @@ TEST(CDSunInvariant, IrradianceIsInterpolatedInWavelength) {
 // Archimedes' cap computed in long double, where cancellation leaves enough digits.
 TEST(CDSunIdentity, DiskRadiance) {
   CDSun sun{{0, 0, 1}, CDSpectralVector<CDStokesVector>(CDSpectralGrid::make({500.0}), 2.0)};
-  const long double cap = 2 * std::numbers::pi_v<long double> * (1 - std::cos(static_cast<long double>(solar_half_angle_rad)));
+  const long double cap = 2 * std::numbers::pi_v<long double> *
+                          (1 - std::cos(static_cast<long double>(solar_half_angle_rad)));
   EXPECT_NEAR(sun.solidAngle_sr() / static_cast<double>(cap), 1, 1e-13);
   EXPECT_NEAR(std::as_const(sun).diskRadiance()[0].getScalar() * sun.solidAngle_sr(), 2, 1e-15);
-  EXPECT_NEAR(solar_half_angle_rad, std::asin(solar_radius_m / astronomical_unit_m), 5e-12);  // digits given
+  EXPECT_NEAR(solar_half_angle_rad, std::asin(solar_radius_m / astronomical_unit_m),
+              5e-12);  // digits given
   EXPECT_NEAR(solar_half_angle_rad / degree, 0.2665, 5e-5);
 }
 

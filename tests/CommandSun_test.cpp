@@ -35,11 +35,13 @@ TEST(CommandSunPublished, NrelWorkedExample) {
 TEST(CommandSunIdentity, AFileAsksTheSame) {
   const Scratch scratch;
   put(scratch / "places.csv",
-      "time,latitude_deg,longitude_deg\n2003-10-17T19:30:30Z,39.742476,-105.1786\n2001-06-10T17:08:00Z,43.16,-77.61\n");
+      "time,latitude_deg,longitude_deg\n2003-10-17T19:30:30Z,39.742476,-105.1786\n2001-06-"
+      "10T17:08:00Z,43.16,-77.61\n");
   const Outcome outcome = malusIn(scratch.path, "sun --points places.csv --out suns.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  const CDTable file = CDTable::read(scratch / "suns.csv"), flags = tableOf(malusIn(scratch.path, nrel).out);
+  const CDTable file = CDTable::read(scratch / "suns.csv"),
+                flags = tableOf(malusIn(scratch.path, nrel).out);
   ASSERT_EQ(file.rows(), 2u);
   EXPECT_EQ(file.cell(0, "zenith_deg"), flags.cell(0, "zenith_deg"));
   EXPECT_NE(file.cell(1, "zenith_deg"), flags.cell(0, "zenith_deg"));
@@ -47,9 +49,10 @@ TEST(CommandSunIdentity, AFileAsksTheSame) {
 
 TEST(CommandSunIdentity, ASeriesOfTwelveHours) {
   const Scratch scratch;
-  const Outcome outcome = malusIn(scratch.path,
-                                  "sun --lat 43.16 --lon -77.61 --time 2001-06-21T07:00:00-04:00 --until "
-                                  "2001-06-21T18:00:00-04:00");
+  const Outcome outcome =
+      malusIn(scratch.path,
+              "sun --lat 43.16 --lon -77.61 --time 2001-06-21T07:00:00-04:00 --until "
+              "2001-06-21T18:00:00-04:00");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const CDTable answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), 12u);
@@ -62,8 +65,11 @@ TEST(CommandSunIdentity, ASeriesOfTwelveHours) {
 TEST(CommandSunInvariant, BadInputIsOneLineAndExitCodeTwo) {
   const Scratch scratch;
   put(scratch / "none.csv", "time,latitude_deg,longitude_deg\n");
-  put(scratch / "bad.csv", "time,latitude_deg,longitude_deg\n2001-06-10T17:08:00Z,43.16,-77.61\n2001-06-10T17:08:00Z,91,0\n");
-  put(scratch / "column.csv", "time,latitude_deg,longtitude_deg\n2001-06-10T17:08:00Z,43.16,-77.61\n");
+  put(scratch / "bad.csv",
+      "time,latitude_deg,longitude_deg\n2001-06-10T17:08:00Z,43.16,-77.61\n2001-06-10T17:08:"
+      "00Z,91,0\n");
+  put(scratch / "column.csv",
+      "time,latitude_deg,longtitude_deg\n2001-06-10T17:08:00Z,43.16,-77.61\n");
   const std::string place = "sun --lat 43.16 --lon -77.61 ";
   for (const std::string& bad :
        {std::string("sun"), place, place + "--time noon", place + "--time 2001-06-10T17:08:00",
@@ -74,14 +80,18 @@ TEST(CommandSunInvariant, BadInputIsOneLineAndExitCodeTwo) {
         place + "--time 2001-06-10T17:08:00Z --step-min 5",
         place + "--time 2001-06-10T17:08:00Z --until 2001-06-11T17:08:00Z --step-min 0",
         place + "--time 2001-06-10T17:08:00Z --until 2101-06-11T17:08:00Z --step-min 1",
-        place + "--time 2001-06-10T17:08:00Z --points bad.csv", std::string("sun --points absent.csv"),
-        std::string("sun --points none.csv"), std::string("sun --points bad.csv --out suns.csv"),
-        std::string("sun --points column.csv"), place + "--time 2001-06-10T17:08:00Z --out ''"}) {
+        place + "--time 2001-06-10T17:08:00Z --points bad.csv",
+        std::string("sun --points absent.csv"), std::string("sun --points none.csv"),
+        std::string("sun --points bad.csv --out suns.csv"),
+        std::string("sun --points column.csv"),
+        place + "--time 2001-06-10T17:08:00Z --out ''"}) {
     const Outcome outcome = malusIn(scratch.path, bad);
     EXPECT_EQ(outcome.code, 2) << bad;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n' << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n'
+                                                                           << outcome.err;
     EXPECT_EQ(outcome.out, "") << bad;
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "suns.csv"));
-  EXPECT_NE(malusIn(scratch.path, "sun --points bad.csv").err.find("bad.csv:3"), std::string::npos);
+  EXPECT_NE(malusIn(scratch.path, "sun --points bad.csv").err.find("bad.csv:3"),
+            std::string::npos);
 }

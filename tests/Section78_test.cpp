@@ -18,7 +18,8 @@ TEST(Section78Identity, TwelveHoursAnHourApart) {
   for (std::size_t i = 0; i < day.size(); ++i) {
     EXPECT_EQ(day[i].hour, 7 + static_cast<int>(i));
     // Julian days resolve 40 microseconds
-    EXPECT_NEAR((day[i].moment.julian_day - day[0].moment.julian_day) * 24, static_cast<double>(i), 1e-7);
+    EXPECT_NEAR((day[i].moment.julian_day - day[0].moment.julian_day) * 24,
+                static_cast<double>(i), 1e-7);
   }
   EXPECT_EQ(toString(day[0].moment), "2001-06-04T11:00:00Z");
 }
@@ -35,5 +36,6 @@ TEST(Section78Invariant, TheSunTurnsByFifteenDegreesAnHour) {
   };
   for (const CDHourOfDay& at : day)
     EXPECT_NEAR(hourAngle(at) - hourAngle(day[0]), 15.0 * (at.hour - 7), 0.1);
-  EXPECT_GT(std::abs(hourAngle(day[11]) - hourAngle(day[0]) - 15.0 * 10.9), 0.1);  // negative control
+  EXPECT_GT(std::abs(hourAngle(day[11]) - hourAngle(day[0]) - 15.0 * 10.9),
+            0.1);  // negative control
 }
