@@ -255,6 +255,39 @@ TEST(CDSkyInvariant, DrawsUniformlyFromTheUpperHemisphere) {
   EXPECT_EQ(sky.density({0, 0, -1}), 0);
 }
 
+// Drawing where it is bright: the density integrates to one, sample() and density() agree, and the
+// estimate of the flux has less variance than uniform drawing. Midpoints of an n x n grid of u.
+TEST(CDSkyInvariant, ABrightPartIsDrawnMoreOften) {
+  const auto brightness = [](const CDVector& d) { return std::pow(std::max(0.0, d.x), 8) + 0.01; };
+  const CDHemisphereDistribution drawn(brightness);
+  double inverse = 0, flux = 0, squares = 0, uniform = 0, uniform_squares = 0;
+  const int n = 200;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double u1 = (i + 0.5) / n, u2 = (j + 0.5) / n;
+      const CDSky::Sample sample = drawn.sample(u1, u2);
+      ASSERT_NEAR(sample.to_sky.getLength(), 1, 1e-14);
+      ASSERT_NEAR(sample.density / drawn.density(sample.to_sky), 1, 1e-12);
+      const double value = brightness(sample.to_sky) / sample.density;
+      inverse += 1 / sample.density / (n * n), flux += value / (n * n), squares += value * value / (n * n);
+      const double r = std::sqrt(1 - u1 * u1);
+      const double even = 2 * pi * brightness({r * std::cos(2 * pi * u2), r * std::sin(2 * pi * u2), u1});
+      uniform += even / (n * n), uniform_squares += even * even / (n * n);
+    }
+  // midpoint sums over cells whose edges are not edges of the grid: 1/n times the largest value
+  EXPECT_NEAR(inverse, 2 * pi, 0.03);
+  EXPECT_NEAR(flux, pi / 9 + 0.02 * pi, 0.01);  // half of 4 pi/(2*9) and the constant
+  EXPECT_NEAR(uniform, flux, 0.01);
+  EXPECT_LT(squares - flux * flux, 0.05 * (uniform_squares - uniform * uniform));
+}
+
+TEST(CDSkyInvariant, ABlackSkyIsDrawnEvenly) {
+  const CDHemisphereDistribution black([](const CDVector&) { return 0.0; });
+  EXPECT_NEAR(black.density(up), 1 / (2 * pi), 1e-15);
+  EXPECT_EQ(black.density({0, 0, -1}), 0);
+  EXPECT_THROW(CDHemisphereDistribution([](const CDVector&) { return -1.0; }), CDMathError);
+}
+
 // Two halves of a path are the whole path; no path changes nothing; a very long one forgets the scene.
 RC_GTEST_PROP(CDAtmosphereInvariant, HazeComposes, ()) {
   const auto grid = CDSpectralGrid::make({500.0});
