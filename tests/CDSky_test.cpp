@@ -258,7 +258,9 @@ TEST(CDSkyInvariant, DrawsUniformlyFromTheUpperHemisphere) {
 // Drawing where it is bright: the density integrates to one, sample() and density() agree, and the
 // estimate of the flux has less variance than uniform drawing. Midpoints of an n x n grid of u.
 TEST(CDSkyInvariant, ABrightPartIsDrawnMoreOften) {
-  const auto brightness = [](const CDVector& d) { return std::pow(std::max(0.0, d.x), 8) + 0.01; };
+  const auto brightness = [](const CDVector& d) {
+    return std::pow(std::max(0.0, d.x), 8) + 0.01;
+  };
   const CDHemisphereDistribution drawn(brightness);
   double inverse = 0, flux = 0, squares = 0, uniform = 0, uniform_squares = 0;
   const int n = 200;
@@ -269,9 +271,11 @@ TEST(CDSkyInvariant, ABrightPartIsDrawnMoreOften) {
       ASSERT_NEAR(sample.to_sky.getLength(), 1, 1e-14);
       ASSERT_NEAR(sample.density / drawn.density(sample.to_sky), 1, 1e-12);
       const double value = brightness(sample.to_sky) / sample.density;
-      inverse += 1 / sample.density / (n * n), flux += value / (n * n), squares += value * value / (n * n);
+      inverse += 1 / sample.density / (n * n), flux += value / (n * n),
+          squares += value * value / (n * n);
       const double r = std::sqrt(1 - u1 * u1);
-      const double even = 2 * pi * brightness({r * std::cos(2 * pi * u2), r * std::sin(2 * pi * u2), u1});
+      const double even =
+          2 * pi * brightness({r * std::cos(2 * pi * u2), r * std::sin(2 * pi * u2), u1});
       uniform += even / (n * n), uniform_squares += even * even / (n * n);
     }
   // midpoint sums over cells whose edges are not edges of the grid: 1/n times the largest value

@@ -27,7 +27,8 @@ double hansenTravis(double um) {
 TEST(RayleighAirPublished, TheAuthorsOwnFit) {
   for (double nm = 300; nm <= 850; nm += 10) {
     EXPECT_NEAR(rayleighOpticalDepth(nm) / bodhaineFit(nm / 1000), 1, 1e-4) << nm;
-    EXPECT_GT(std::abs(rayleighOpticalDepth(nm * 1.001) / bodhaineFit(nm / 1000) - 1), 1e-4);  // control
+    EXPECT_GT(std::abs(rayleighOpticalDepth(nm * 1.001) / bodhaineFit(nm / 1000) - 1),
+              1e-4);  // control
   }
 }
 
