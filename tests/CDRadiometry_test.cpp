@@ -1,0 +1,211 @@
+// The light that leaves surfaces (nw/imaging/CDRadiometry.nw).
+#include "imaging/CDRadiometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "light/CDError.hpp"
+#include "matter/BRDFDiffuse.hpp"
+#include "matter/BRDFTorranceSparrow.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double pi = std::numbers::pi, degree = pi / 180;
+const CDSpectralGridPtr one_band = CDSpectralGrid::make({CDSpectralLocation(550.0)});
+
+struct Plate {  // a square in the plane z = 0 of its own axes, turned and moved by `place`
+  CDTransform place;
+  std::shared_ptr<const CDBRDFModel> brdf;
+};
+
+CDSpectralVector<CDStokesVector> light(const CDStokesVector& s) {
+  CDSpectralVector<CDStokesVector> v(one_band);
+  v[0] = s;
+  return v;
+}
+
+CDWorld worldOf(const std::vector<Plate>& plates, double sky = 0) {
+  CDWorld world;
+  world.grid = one_band;
+  CDGeometryBuilder builder;
+  for (std::size_t i = 0; i < plates.size(); ++i) {
+    CDMesh mesh;
+    mesh.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.facets = {"plate" + std::to_string(i)}, mesh.materials = {"m" + std::to_string(i)};
+    mesh.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
+    builder.addMesh(mesh, plates[i].place);
+    world.materials.push_back({"m" + std::to_string(i), plates[i].brdf});
+  }
+  world.geometry = std::move(builder).build();
+  world.sky = std::make_shared<CDUniformSky>(light(sky));
+  return world;
+}
+
+void setSun(CDWorld& world, const CDVector& to_sun, const CDStokesVector& irradiance) {
+  world.sun.emplace(CDSun{normalized(to_sun), light(irradiance)});
+}
+
+std::shared_ptr<const CDBRDFModel> copper(double sigma = 0.2) {
+  return std::make_shared<BRDFTorranceSparrow>(0.405, 2.95, sigma);
+}
+
+CDStokesVector seen(const CDWorld& world, const CDRadiometryOptions& options, const CDRadiometry::Ray& ray,
+                    CDRadiometry::Truth* truth = nullptr) {
+  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), options);
+  std::array<double, 4> out{};
+  CDRadiometry::Truth met;
+  radiometry.radiance({&ray, 1}, out, {&met, 1});
+  if (truth) *truth = met;
+  return {out[0], out[1], out[2], out[3]};
+}
+
+/// A ray that sees the point `at` from direction `to_viewer`, `up` of the image given by `horizontal`.
+CDRadiometry::Ray looking(const CDVector& at, const CDVector& to_viewer, const CDVector& horizontal) {
+  const CDVector d = normalized(to_viewer);
+  return {at + d * 5, -d, horizontal};
+}
+
+double apart(const CDStokesVector& a, const CDStokesVector& b) {
+  double largest = 0;
+  for (int i = 0; i < 4; ++i) largest = std::max(largest, std::abs(a.getStokes(i) - b.getStokes(i)));
+  return largest;
+}
+const CDRadiometryOptions sun_only{.rays = {1}};
+}  // namespace
+
+// f E cos(theta), all in frames of the plate: single precision has no part in the sun's light.
+TEST(CDRadiometryIdentity, PlateReflectsWhatItsBRDFSays) {
+  CDRandom random(1);
+  for (int i = 0; i < 200; ++i) {
+    const double theta_i = 85 * degree * random.uniform(), theta_r = 85 * degree * random.uniform();
+    const double phi_i = 2 * pi * random.uniform(), phi_r = 2 * pi * random.uniform();
+    const CDVector to_sun = CDVector::fromAngles(theta_i, phi_i), to_viewer = CDVector::fromAngles(theta_r, phi_r);
+    CDWorld world = worldOf({{{}, copper()}});
+    const CDStokesVector E(100, 20, 30, 60);
+    setSun(world, to_sun, E);
+    const CDStokesVector expected =
+        copper()->getBRDF(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi_r - phi_i)).at(0) * E * std::cos(theta_i);
+    const CDRayFrame frame = rayFrame(to_viewer, {0, 0, 1});
+    const CDStokesVector got = seen(world, sun_only, looking({}, to_viewer, frame.s));
+    EXPECT_LT(apart(got, expected), 1e-9 * expected.getScalar()) << i;
+  }
+}
+
+TEST(CDRadiometryIdentity, NegativeControlATenthOfADegreeIsSeen) {
+  CDWorld world = worldOf({{{}, copper()}});
+  setSun(world, CDVector::fromAngles(30.1 * degree, pi), {100, 20, 30, 60});
+  const CDVector viewer = CDVector::fromAngles(40 * degree, 0);
+  const CDStokesVector expected =
+      copper()->getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 180)).at(0) * CDStokesVector(100, 20, 30, 60) *
+      std::cos(30 * degree);
+  EXPECT_GT(apart(seen(world, sun_only, looking({}, viewer, rayFrame(viewer, {0, 0, 1}).s)), expected),
+            1e-4 * expected.getScalar());
+}
+
+// Everything is turned together about any axis but for the directions that define frames: the sun's light is
+// unpolarised, and the camera's horizontal turns along.
+TEST(CDRadiometryInvariant, ATurnedWorldLooksTheSame) {
+  CDRandom random(2);
+  const CDVector to_sun = CDVector::fromAngles(0.5, 1), viewer = CDVector::fromAngles(0.7, 3);
+  CDStokesVector first;
+  for (int i = 0; i < 20; ++i) {
+    const CDTransform turn =
+        i == 0 ? CDTransform{}
+               : CDTransform::rotate(CDVector::fromAngles(pi * random.uniform(), 6 * random.uniform()), 6 * random.uniform());
+    const CDTransform steep = CDTransform::translate({0.9, 0, 0}).after(CDTransform::rotate({0, 1, 0}, -1.2));
+    CDWorld world = worldOf({{turn, copper()}, {turn.after(steep), copper(0.1)}});
+    setSun(world, turn.apply(to_sun), 1);
+    const CDStokesVector got =
+        seen(world, {.sampling = CDSampling::grid, .rays = {1}}, looking({}, turn.apply(viewer), turn.apply({0, 1, 0})));
+    if (i == 0) first = got;
+    EXPECT_LT(apart(got, first), 1e-9 * first.getScalar());
+  }
+}
+
+TEST(CDRadiometryInvariant, ATurnedCameraTurnsTheStokesVector) {
+  CDWorld world = worldOf({{{}, copper()}});
+  setSun(world, CDVector::fromAngles(0.5, 1), {1, 0.2, -0.3, 0.4});
+  const CDVector viewer = CDVector::fromAngles(0.7, 3);
+  const CDRayFrame frame = rayFrame(viewer, {0, 0, 1});
+  const CDStokesVector level = seen(world, sun_only, looking({}, viewer, frame.s));
+  for (const double angle : {0.3, 1.0, 2.5}) {
+    const CDVector horizontal = frame.s * std::cos(angle) + frame.p * std::sin(angle);
+    CDStokesVector expected = level;
+    expected.rotate(angle);
+    EXPECT_LT(apart(seen(world, sun_only, looking({}, viewer, horizontal)), expected), 1e-12);
+  }
+}
+
+// Lambertian plate under a uniform sky: rho L, exactly, when the weights sum to pi.
+TEST(CDRadiometryIdentity, UniformSkyOnALambertianPlate) {
+  const auto grey = std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(one_band, 0.5), 0.0);
+  const CDWorld world = worldOf({{{}, grey}}, 2);
+  for (const CDSampling sampling : {CDSampling::grid, CDSampling::gridRotated}) {
+    const CDStokesVector got =
+        seen(world, {.sampling = sampling, .rays = {2001}}, looking({}, {0.3, 0, 1}, {0, 1, 0}));
+    EXPECT_NEAR(got.getScalar(), 1.0, 1e-3);  // midpoint rule over 22 zeniths
+    EXPECT_FALSE(got.getDOP() > 1e-12);
+  }
+}
+
+// Finding 10: with one reflection unpolarised light cannot become circular; with two it can.
+TEST(CDRadiometryInvariant, CircularLightWantsTwoReflections) {
+  const CDTransform wall = CDTransform::translate({1, 0.3, 0.6}).after(CDTransform::rotate({0.3, 1, 0}, -1.1));
+  CDWorld world = worldOf({{{}, copper()}, {wall, copper()}}, 0.1);
+  setSun(world, {-0.5, 0.2, 1}, 1);
+  const CDRadiometry::Ray ray = looking({0.3, 0, 0}, {-0.4, 0.1, 1}, {0, 1, 0});
+  const CDStokesVector single = seen(world, {.rays = {400}}, ray), twice = seen(world, {.rays = {400, 1}}, ray);
+  EXPECT_LT(std::abs(single.getStokes(3)), 1e-15);
+  EXPECT_GT(std::abs(twice.getStokes(3)), 1e-6);
+  EXPECT_GT(twice.getScalar(), single.getScalar());
+}
+
+TEST(CDRadiometryIdentity, ShadowAndTruth) {
+  CDWorld world = worldOf({{{}, copper()}, {CDTransform::translate({0, 0, 2}), copper()}}, 0.1);
+  setSun(world, {0, 0, 1}, 1);
+  CDRadiometry::Truth truth;
+  seen(world, sun_only, {{3, 0, 1}, normalized({-3, 0, -1}), {0, 1, 0}}, &truth);
+  EXPECT_EQ(truth.facet, 0u);
+  EXPECT_TRUE(truth.sun_shadow);
+  EXPECT_NEAR(truth.range_m, std::sqrt(10), 1e-6);
+  seen(world, sun_only, {{0, 0, 5}, {0, 0, -1}, {1, 0, 0}}, &truth);
+  EXPECT_EQ(truth.facet, 1u);
+  EXPECT_FALSE(truth.sun_shadow);
+  const CDStokesVector sky = seen(world, sun_only, {{0, 0, 5}, {0, 0, 1}, {1, 0, 0}}, &truth);
+  EXPECT_EQ(truth.facet, CDHit::nothing);
+  EXPECT_NEAR(sky.getScalar(), 0.1, 1e-15);
+}
+
+// The fault of the thesis: some of many pixels see the sun's disk a second time, a thousand times too bright.
+TEST(CDRadiometryIdentity, SunSampledTwiceIsAFaultThatShows) {
+  const auto grey = std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(one_band, 0.5), 0.0);
+  CDWorld world = worldOf({{{}, grey}}, 0.05);
+  setSun(world, CDVector::fromAngles(0.5, 1), 1);
+  const auto tracer = std::make_shared<CDRayTracer>(world.geometry);
+  const auto largest = [&](bool fault) {
+    const CDRadiometry radiometry(world, tracer, {.sampling = CDSampling::random, .rays = {91}, .sun_sampled_twice = fault});
+    double most = 0;
+    for (std::uint64_t pixel = 0; pixel < 4000; ++pixel) {
+      CDRadiometry::Ray ray = looking({}, {0.1, 0.1, 1}, {1, 0, 0});
+      ray.pixel = pixel;
+      std::array<double, 4> out{};
+      radiometry.radiance({&ray, 1}, out);
+      most = std::max(most, out[0]);
+    }
+    return most;
+  };
+  EXPECT_LT(largest(false), 0.5);
+  EXPECT_GT(largest(true), 10);
+}
+
+TEST(CDRadiometryIdentity, RefusesWhatDoesNotFit) {
+  CDWorld world = worldOf({{{}, copper()}});
+  const auto tracer = std::make_shared<CDRayTracer>(world.geometry);
+  EXPECT_THROW(CDRadiometry(world, tracer, {.rays = {-1}}), CDMathError);
+  EXPECT_THROW(CDRadiometry(world, nullptr, {}), CDMathError);
+  world.materials[0].brdf = nullptr;
+  EXPECT_THROW(CDRadiometry(world, tracer, {}), CDMathError);
+}
