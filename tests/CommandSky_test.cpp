@@ -1,0 +1,172 @@
+// malus sky, from outside (nw/program/CommandSky.nw).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "Program.hpp"
+#include "light/CDTable.hpp"
+#include "world/CDSky.hpp"
+#include "world/CDSun.hpp"
+
+using namespace malus;
+
+namespace {
+CDTable tableOf(const std::string& text) {
+  std::istringstream stream(text);
+  return CDTable::parse(stream, "answer");
+}
+
+// The printed values as a file of questions: the file's own columns under the names of malus sky.
+std::string questions(const CDTable& printed) {
+  std::string text = "tau,depolarization,albedo,irradiance,mu0,mu,phi_deg,direction,tau_obs\n";
+  for (std::size_t row = 0; row < printed.rows(); ++row) {
+    for (const char* column : {"tau", "rho_depol", "albedo", "F0", "mu0", "mu", "phi_deg"})
+      text += printed.cell(row, column) + ",";
+    text += printed.cell(row, "dir") == "UP" ? "up," : "down,";
+    text += printed.cell(row, "tau_obs") + "\n";
+  }
+  return text;
+}
+}  // namespace
+
+// Natraj, Li and Yung 2009 and IPRT A2; half a unit of the last printed digit, or the file's tolerance.
+TEST(CommandSkyPublished, AFileOfPrintedValuesInEveryConvention) {
+  const CDTable printed = CDTable::read("validation/printed/rayleigh.csv");
+  const Scratch scratch;
+  put(scratch / "questions.csv", questions(printed));
+  for (const std::string convention : {"iprt", "natraj", "malus"}) {
+    const Outcome outcome =
+        malusIn(scratch.path, "sky --points questions.csv --convention " + convention);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const CDTable answer = tableOf(outcome.out);
+    EXPECT_EQ(answer.header("convention"), convention);
+    ASSERT_EQ(answer.rows(), printed.rows());
+    const double q_sign = convention == "iprt" ? 1 : -1;
+    for (std::size_t row = 0; row < printed.rows(); ++row) {
+      const double tolerance = std::max(6e-9, printed.cell(row, "source") == "natraj2009"
+                                                  ? 0
+                                                  : printed.number(row, "tol_abs"));
+      EXPECT_NEAR(answer.number(row, "I"), printed.number(row, "I"), tolerance) << row;
+      EXPECT_NEAR(answer.number(row, "Q"), q_sign * printed.number(row, "Q"), tolerance) << row;
+      EXPECT_NEAR(answer.number(row, "U"), printed.number(row, "U"), tolerance) << row;
+      EXPECT_EQ(answer.number(row, "V"), 0);
+      EXPECT_GT(std::abs(answer.number(row, "I") * 1.0001 - printed.number(row, "I")),
+                tolerance);  // control
+    }
+  }
+}
+
+TEST(CommandSkyIdentity, FlagsAskTheSameAsAFile) {
+  const Scratch scratch;
+  put(scratch / "one.csv", "tau,albedo,mu0,mu,phi_deg,label\n0.5,0.25,0.6,0.4,90,here\n");
+  const CDTable flags = tableOf(
+      malusIn(scratch.path,
+              "sky --tau 0.5 --albedo 0.25 --mu0 0.6 --mu 0.4 --phi 90 --convention iprt")
+          .out);
+  const CDTable file =
+      tableOf(malusIn(scratch.path, "sky --points one.csv --convention iprt").out);
+  ASSERT_EQ(flags.rows(), 1u);
+  for (const char* column : {"I", "Q", "U"})
+    EXPECT_EQ(flags.cell(0, column), file.cell(0, column));
+  EXPECT_EQ(file.cell(0, "label"), "here");
+  EXPECT_NEAR(flags.number(0, "I"), 0.22239883, 6e-9);  // Natraj, Li and Yung 2009
+  EXPECT_NEAR(flags.number(0, "U"), 0.11112462, 6e-9);
+}
+
+// The dome that comes out is a sky that goes in.
+TEST(CommandSkyIdentity, TheDomeIsASky) {
+  const Scratch scratch;
+  for (const std::string convention : {"malus", "iprt"}) {
+    const Outcome outcome = malusIn(
+        scratch.path,
+        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --dome 10 --out sky.csv --convention " +
+            convention);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const CDTableSky sky(CDTable::read(scratch / "sky.csv"), CDSpectralGrid::make({450.0}));
+    CDSpectralVector<CDStokesVector> out(sky.grid());
+    const double degree = std::numbers::pi / 180;
+    sky.radiance(compassDirection(60 * degree, 40 * degree), out);
+    const CDTable one =
+        tableOf(malusIn(scratch.path,
+                        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --mu 0.5 --phi 40")
+                    .out);
+    const CDStokesVector light = out[0];
+    const char* const names[]{"I", "Q", "U"};
+    // 0.5 is not the cosine of 60 deg to the last digit
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(light.getStokes(k), one.number(0, names[k]), 1e-9) << convention << k;
+  }
+}
+
+TEST(CommandSkyIdentity, WavelengthsAndTheRealSun) {
+  const Scratch scratch;
+  const CDTable real = tableOf(
+      malusIn(scratch.path, "sky --wavelength-nm 450 --mu0 0.9 --mu 0.5 --irradiance astm-e490")
+          .out);
+  const CDTable unit = tableOf(
+      malusIn(scratch.path, "sky --wavelength-nm 450 --mu0 0.9 --mu 0.5 --irradiance 1").out);
+  EXPECT_NEAR(real.number(0, "I") / unit.number(0, "I"), 1.996,
+              0.0005);  // ASTM E490, 10-nm mean
+  const CDTable low = tableOf(
+      malusIn(scratch.path, "sky --wavelength-nm 450 --pressure-hPa 500 --mu0 0.9 --mu 0.5")
+          .out);
+  EXPECT_LT(low.number(0, "I"), unit.number(0, "I") * std::numbers::pi);
+}
+
+TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
+  const Scratch scratch;
+  put(scratch / "none.csv", "tau,mu0,mu\n");
+  put(scratch / "bad.csv", "tau,mu0,mu\n0.1,0.5,0.5\n0.1,0.5,0\n");
+  put(scratch / "column.csv", "tau,albdo,mu0,mu\n0.1,0.2,0.5,0.5\n");
+  put(scratch / "answer.csv", "tau,mu0,mu,I\n0.1,0.5,0.5,1\n");
+  put(scratch / "good.csv", "tau,mu0,mu\n0.1,0.5,0.5\n");
+  for (const std::string bad :
+       {"",
+        "--tau 0.5",
+        "--tau 0.5 --mu0 0.5",
+        "--mu0 0.5 --mu 0.5",
+        "--tau -1 --mu0 0.5 --mu 0.5",
+        "--tau 0 --mu0 0.5 --mu 0.5",
+        "--tau 17 --mu0 0.5 --mu 0.5",
+        "--tau nan --mu0 0.5 --mu 0.5",
+        "--tau 0.5 --mu0 0 --mu 0.5",
+        "--tau 0.5 --mu0 -0.2 --mu 0.5",
+        "--tau 0.5 --mu0 0.5 --mu 0",
+        "--tau 0.5 --mu0 0.5 --mu 1.1",
+        "--tau 0.5 --albedo 1.1 --mu0 0.5 --mu 0.5",
+        "--tau 0.5 --depolarization 1 --mu0 0.5 --mu 0.5",
+        "--tau 0.5 --wavelength-nm 500 --mu0 0.5 --mu 0.5",
+        "--wavelength-nm 100 --mu0 0.5 --mu 0.5",
+        "--wavelength-nm 500 --pressure-hPa -3 --mu0 0.5 --mu 0.5",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --direction sideways",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --tau-obs 0.6",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --irradiance astm-e490",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --irradiance bright",
+        "--wavelength-nm 1500 --mu0 0.5 --mu 0.5 --irradiance astm-e490",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --convention coulson",
+        "--points absent.csv",
+        "--points none.csv",
+        "--points bad.csv --out answers.csv",
+        "--points column.csv",
+        "--points answer.csv",
+        "--points good.csv --mu 0.4",
+        "--points good.csv --dome 5",
+        "--tau 0.5 --mu0 0.5 --dome 5",
+        "--wavelength-nm 500 --mu0 0.5 --dome 7"}) {
+    const Outcome outcome = malusIn(scratch.path, std::string("sky ") + bad);
+    EXPECT_EQ(outcome.code, 2) << bad;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n'
+                                                                           << outcome.err;
+    EXPECT_EQ(outcome.out, "") << bad;
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "answers.csv"));
+  EXPECT_NE(malusIn(scratch.path, "sky --points bad.csv").err.find("bad.csv:3"),
+            std::string::npos);
+  const std::string choices =
+      malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --convention coulson").err;
+  for (const char* choice : {"malus", "natraj", "iprt"})
+    EXPECT_NE(choices.find(choice), std::string::npos);
+}
