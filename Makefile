@@ -13,8 +13,11 @@ PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
 BOOK    := latexml fonts-texgyre fonts-texgyre-math
 
-.PHONY: all test book reproduce bench format dist sanitize clang coverage fresh-machine clean help
-.PHONY: need-program need-book
+# What the book on paper wants besides; asked for only by make pdf.
+PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
+
+.PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fresh-machine clean help
+.PHONY: need-program need-book need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
@@ -31,6 +34,10 @@ test: need-book $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's
 book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
 	@cmake --build $(BUILD) -j $(JOBS) --target book
 	@echo "The book: $(BUILD)/book/index.html"
+
+pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (PDF)
+	@cmake --build $(BUILD) -j $(JOBS) --target pdf
+	@echo "The book: $(BUILD)/malus.pdf"
 
 reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
@@ -87,3 +94,6 @@ need-program:
 
 need-book:
 	@$(NEED) $(PROGRAM) $(BOOK)
+
+need-paper:
+	@$(NEED) $(PROGRAM) $(BOOK) $(PAPER)

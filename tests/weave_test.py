@@ -94,6 +94,15 @@ class Workshop(unittest.TestCase):
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
+    def weave_pdf(self):
+        """(exit code, complaints) of the second renderer"""
+        done = subprocess.run(
+            [os.path.join(LOOM, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
+             os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
+             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/matter/second.nw"],
+            cwd=self.dir, capture_output=True, text=True)
+        return done.returncode, done.stderr
+
     def check_links(self):
         done = subprocess.run([os.path.join(LOOM, "links.py"), "book"], cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
@@ -231,6 +240,48 @@ class SpoiledBook(Workshop):
         self.spoiled("index.html", "</main>", "<script></script></main>", "a script")
 
 
+PAPER = {"lualatex": "texlive-luatex", "rsvg-convert": "librsvg2-bin", "kpsewhich": "texlive-binaries"}
+
+
+def lacks(commands):
+    """The Debian packages that are missing, as a reason to skip; nothing if all are there."""
+    missing = [package for command, package in commands.items() if not shutil.which(command)]
+    return f"not installed: {' '.join(missing)}" if missing else ""
+
+
+@unittest.skipIf(lacks(PAPER), lacks(PAPER) + " (make pdf installs it)")
+class PrintedBook(Workshop):
+    """The same book as PDF, and what must not get into it."""
+
+    def fails(self, old, new, *fragments):
+        self.assertIn(old, FIRST)
+        self.put("nw/light/first.nw", FIRST.replace(old, new))
+        code, complaint = self.weave_pdf()
+        self.assertEqual(code, 1)
+        for fragment in fragments:
+            self.assertIn(fragment, complaint)
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "book.pdf")), "a bad book was delivered")
+
+    def test_whole_book(self):
+        self.assertEqual(self.weave_pdf(), (0, ""))
+        with open(os.path.join(self.dir, "book.pdf"), "rb") as file:
+            self.assertEqual(file.read(5), b"%PDF-")
+        with open(os.path.join(self.shared, "pdf", "malus.aux"), encoding="utf-8") as file:
+            aux = file.read()
+        self.assertIn(r"\newlabel{eq:first:rs}{{{3.50}}", aux)
+        self.assertRegex(aux, r"\\newlabel\{ch:second\}\{\{2\}")
+        self.assertEqual(len(re.findall(r"\\newlabel\{chunk:", aux)), 4)
+
+    def test_line_that_sticks_out(self):
+        self.fails("it is zero.", r"it is zero. \rule{20cm}{1pt}", "nw/light/first.nw:", "Overfull")
+
+    def test_character_that_the_font_lacks(self):
+        self.fails("it is zero.", "it is \u4e00.", "nw/light/first.nw", "Missing character")
+
+    def test_latex_error_is_told_with_the_line_of_the_chapter(self):
+        self.fails(r"\section{The code}", r"\section{The code} \sectoin", "nw/light/first.nw:6:", "Undefined control sequence")
+
+
 class Parts(unittest.TestCase):
     """The loom's parts by themselves."""
 
@@ -263,7 +314,7 @@ class Parts(unittest.TestCase):
                 file.write(f"Text.\n<<Code>>=\n{code}\n@\n")
             chapters = noweb.read([path])
         import html
-        painted = listing.Listing(chapters).code(chapters[0].chunks[0])
+        painted = listing.HtmlListing(chapters).code(chapters[0].chunks[0])
         self.assertEqual(html.unescape(re.sub(r"<[^>]*>", "", painted)), code)
         self.assertIn('<span class="comment">/* two\nlines */</span>', painted)
         self.assertIn('<span class="string">"\\"//"</span>', painted)

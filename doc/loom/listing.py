@@ -1,8 +1,4 @@
-"""Chunks as HTML: coloured C++, links to what is used, and below each chunk where it leads.
-
-Links are written as chunk:LABEL; the weaver knows on which page a label is
-and puts the address in when it lays out the pages.
-"""
+"""The chunks of a book as HTML and as LaTeX: coloured C++, links to what is used, and below each chunk where it leads."""
 import re
 from html import escape
 
@@ -25,6 +21,7 @@ TOKEN = re.compile(
       | (?P<other>\s+|.)""", re.VERBOSE | re.MULTILINE | re.DOTALL)
 
 
+WHOLE = 12  # a chunk of so many lines is not cut by the end of a page
 MOST = 8  # uses of an identifier that are listed below its definition; the index lists all
 
 
@@ -40,47 +37,37 @@ def name_html(name):
 
 
 class Listing:
-    """Renders the chunks of a book."""
+    """What stands in and below the chunks of a book. A renderer says how a link, a word or a colour is written."""
 
     def __init__(self, chapters):
         self.chunks = [chunk for chapter in chapters for chunk in chapter.chunks]
         self.by_label = {chunk.label: chunk for chunk in self.chunks}
 
-    def number(self, label):
-        chunk = self.by_label[label]
-        place = escape(f"{noweb.plain(chunk.name)}, {chunk.chapter.path}", quote=True)
-        return f'<a href="chunk:{label}" title="{place}">{chunk.number}</a>'
+    def ordered(self, labels):
+        return sorted(set(labels), key=lambda label: self.by_label[label].number)
 
-    def numbers(self, labels, most=None, rest=""):
-        """Links in the order of the book; if there are more than most, the others are one link to rest."""
-        unique = sorted(set(labels), key=lambda label: self.by_label[label].number)
-        shown = unique if most is None or len(unique) <= most + 1 else unique[:most]
+    def numbers(self, labels, word=""):
+        """Links in the order of the book; of the uses of a word only the first few, and a link to all."""
+        unique = self.ordered(labels)
+        shown = unique if not word or len(unique) <= MOST + 1 else unique[:MOST]
         out = ", ".join(self.number(label) for label in shown)
         more = len(unique) - len(shown)
-        return f'{out} and <a href="{rest}">{more} more</a>' if more else out
-
-    def use(self, chunk, token):
-        name, label = chunk.used_chunks[int(token[1:-1])]
-        number = self.by_label[label].number
-        return f'<a class="use" href="chunk:{label}">⟨{name_html(name)} <span class="chunk-number">{number}</span>⟩</a>'
+        return f"{out} and {self.more(more, word)}" if more else out
 
     def code(self, chunk):
         out = []
         for match in TOKEN.finditer(chunk.text):
             kind, text = match.lastgroup, match[0]
             if kind == "use":
-                out.append(self.use(chunk, text))
+                out.append(self.use(chunk, *chunk.used_chunks[int(text[1:-1])]))
             elif kind == "word" and text in chunk.links:
-                label = chunk.links[text]
-                target = self.by_label[label]
-                title = f"defined in chunk {target.number}, {target.chapter.path}"
-                out.append(f'<a class="identifier" href="chunk:{label}" title="{escape(title)}">{text}</a>')
+                out.append(self.identifier(text, chunk.links[text]))
             elif kind == "word" and text in KEYWORDS:
-                out.append(f'<span class="keyword">{text}</span>')
+                out.append(self.colour("keyword", text))
             elif kind in ("word", "other"):
-                out.append(escape(text, quote=False))
+                out.append(self.plain(text))
             else:
-                out.append(f'<span class="{kind}">{escape(text, quote=False)}</span>')
+                out.append(self.colour(kind, text))
         return "".join(out)
 
     def foot(self, chunk):
@@ -95,9 +82,54 @@ class Listing:
             notes.append("A file of the program")
         for word, users in chunk.defines:
             others = [label for label in users if label != chunk.label]
-            where = f", used in {self.numbers(others, MOST, f'identifiers.html#{anchor_of(word)}')}" if others else ""
-            notes.append(f"Defines <code>{escape(word)}</code>{where}")
+            where = f", used in {self.numbers(others, word)}" if others else ""
+            notes.append(f"Defines {self.word(word)}{where}")
         return ". ".join(notes) + "."
+
+    def named_chunks(self):
+        """The first piece of each chunk, by name."""
+        firsts = [chunk for chunk in self.chunks if chunk.pieces[0] is chunk]
+        return sorted(firsts, key=lambda chunk: noweb.plain(chunk.name).lower())
+
+    def identifiers(self):
+        """(identifier, labels of the chunks that define it, labels of the others that use it), by name."""
+        defined, used = {}, {}
+        for chunk in self.chunks:
+            for word, users in chunk.defines:
+                defined.setdefault(word, set()).add(chunk.label)
+                used.setdefault(word, set()).update(users)
+        return [(word, defined[word], used[word] - defined[word])
+                for word in sorted(defined, key=lambda word: (word.lower(), word))]
+
+
+class HtmlListing(Listing):
+    """Chunks as HTML. Links are written as chunk:LABEL; the weaver puts the address in when it lays out the pages."""
+
+    def number(self, label):
+        chunk = self.by_label[label]
+        place = escape(f"{noweb.plain(chunk.name)}, {chunk.chapter.path}", quote=True)
+        return f'<a href="chunk:{label}" title="{place}">{chunk.number}</a>'
+
+    def more(self, count, word):
+        return f'<a href="identifiers.html#{anchor_of(word)}">{count} more</a>'
+
+    def word(self, word):
+        return f"<code>{escape(word)}</code>"
+
+    def use(self, chunk, name, label):
+        number = self.by_label[label].number
+        return f'<a class="use" href="chunk:{label}">⟨{name_html(name)} <span class="chunk-number">{number}</span>⟩</a>'
+
+    def identifier(self, text, label):
+        target = self.by_label[label]
+        title = f"defined in chunk {target.number}, {target.chapter.path}"
+        return f'<a class="identifier" href="chunk:{label}" title="{escape(title)}">{text}</a>'
+
+    def plain(self, text):
+        return escape(text, quote=False)
+
+    def colour(self, kind, text):
+        return f'<span class="{kind}">{escape(text, quote=False)}</span>'
 
     def chunk(self, chunk, anchor):
         again = "+" if chunk.pieces[0] is not chunk else ""
@@ -108,23 +140,72 @@ class Listing:
                 f'<p class="chunk-foot">{self.foot(chunk)}</p>\n</div>')
 
     def chunk_index(self):
-        firsts = [chunk for chunk in self.chunks if chunk.pieces[0] is chunk]
-        firsts.sort(key=lambda chunk: noweb.plain(chunk.name).lower())
         rows = [f'<tr><td>⟨{name_html(chunk.name)}⟩</td>'
                 f'<td>{self.numbers(piece.label for piece in chunk.pieces)}</td>'
-                f'<td>{self.numbers(chunk.used_in) or "a file"}</td></tr>' for chunk in firsts]
+                f'<td>{self.numbers(chunk.used_in) or "a file"}</td></tr>' for chunk in self.named_chunks()]
         return table(("Chunk", "defined in", "used in"), rows)
 
     def identifier_index(self):
-        defined, used = {}, {}
-        for chunk in self.chunks:
-            for word, users in chunk.defines:
-                defined.setdefault(word, set()).add(chunk.label)
-                used.setdefault(word, set()).update(users)
         rows = [f'<tr id="{anchor_of(word)}"><td><code>{escape(word)}</code></td>'
-                f"<td>{self.numbers(defined[word])}</td><td>{self.numbers(used[word] - defined[word])}</td></tr>"
-                for word in sorted(defined, key=lambda word: (word.lower(), word))]
+                f"<td>{self.numbers(defined)}</td><td>{self.numbers(used)}</td></tr>"
+                for word, defined, used in self.identifiers()]
         return table(("Identifier", "defined in", "used in"), rows)
+
+
+TEX = {"number": "digits"}  # \litnumber is the number of a chunk
+
+
+class TexListing(Listing):
+    """Chunks as LaTeX, for book.sty."""
+
+    def number(self, label):
+        return rf"\litnumber{{{label}}}{{{self.by_label[label].number}}}"
+
+    def more(self, count, word):
+        return rf"\litmore{{{anchor_of(word)}}}{{{count}}}"
+
+    def word(self, word):
+        return rf"\litcode{{{noweb.quote_latex(word)}}}"
+
+    def name(self, name):
+        parts = re.split(r"\[\[(.*?)\]\]", name)
+        return "".join(self.word(part) if i % 2 else noweb.quote_latex(part).replace("-{}", "-").replace("\\textquotesingle{}", "'")
+                       for i, part in enumerate(parts))
+
+    def use(self, chunk, name, label):
+        return rf"\lituse{{{label}}}{{{self.by_label[label].number}}}{{{self.name(name)}}}"
+
+    def identifier(self, text, label):
+        return rf"\litidentifier{{{label}}}{{{self.plain(text)}}}"
+
+    def plain(self, text):
+        return noweb.quote_latex(text).replace(" ", "\\ ")
+
+    def colour(self, kind, text):
+        return "\n".join(rf"\lit{TEX.get(kind, kind)}{{{self.plain(line)}}}" if line else "" for line in text.split("\n"))
+
+    def chunk(self, chunk):
+        """The definition of what \\litchunk prints."""
+        again = "+" if chunk.pieces[0] is not chunk else ""
+        lines = [rf"\litline{{{line}}}" for line in self.code(chunk).split("\n")]
+        if len(lines) > WHOLE:
+            lines[2:-3] = [line + r"\litbreak" for line in lines[2:-3]]
+        lines = "\n".join(lines)
+        shown = re.sub("\x01(\\d+)\x02", lambda use: chunk.used_chunks[int(use[1])][0] + " 1234", chunk.text)
+        widest = max(map(len, shown.split("\n")))
+        return (rf"\litdefine{{{chunk.label}}}{{\litname{{{chunk.label}}}{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}%" "\n"
+                rf"\litcodelines{{{widest}}}{{{lines}}}\litfoot{{{self.foot(chunk)}}}}}" "\n")
+
+    def chunk_index(self):
+        return "\n".join(rf"\litchunkentry{{{self.name(chunk.name)}}}{{{self.pages(piece.label for piece in chunk.pieces)}}}"
+                         rf"{{{self.numbers(chunk.used_in) or 'a file'}}}" for chunk in self.named_chunks())
+
+    def identifier_index(self):
+        return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{}}{{{self.pages(defined)}}}"
+                         rf"{{{self.numbers(used)}}}" for word, defined, used in self.identifiers())
+
+    def pages(self, labels):
+        return ", ".join(rf"{self.number(label)}~\litpage{{{label}}}" for label in self.ordered(labels))
 
 
 def table(head, rows):

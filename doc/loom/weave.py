@@ -15,20 +15,17 @@ converts their prose, references.py reads the bibliography, and this program
 joins them: it checks what the prose refers to, lays out the pages, and copies
 the figures.
 """
-import argparse
 import concurrent.futures
-import configparser
 import os
 import re
-import shutil
 import string
-import sys
 from html import escape, unescape
 
+import book
 import latexml
 import listing
-import noweb
 import references
+from book import Page
 from problems import Problem, Problems, stop_if_any
 
 FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular.otf",
@@ -36,126 +33,6 @@ FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular
          "/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-bold.otf",
          "/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-bolditalic.otf",
          "/usr/share/texmf/fonts/opentype/public/tex-gyre-math/texgyrepagella-math.otf"]
-
-LABEL = re.compile(r"\\label\{([^}]*)\}")
-REFERENCE = re.compile(r"\\(?:eq)?ref\{([^}]*)\}")
-CITATION = re.compile(r"\\cite(?:\[[^\]]*\])?\{([^}]*)\}")
-VALUE = re.compile(r"\\val\{([^}]*)\}")
-FIGURE = re.compile(r"\\includegraphics(?:\[[^\]]*\])?\{([^}]*)\}")
-MALUSVAL = re.compile(r"\\malusval\{([^}]*)\}\{(.*)\}\s*$")
-
-
-class Page:
-    """One page of the book; source is the file to edit, chapter its number (0: none)."""
-
-    def __init__(self, name, source, latex, chapter=0):
-        self.name, self.source, self.latex, self.chapter = name, source, latex, chapter
-        self.file = name + ".html"
-        self.title = self.body = ""
-        self.sections = []  # (anchor, title)
-        self.root = None    # LaTeXML's XML
-
-
-def line_of(text, place):
-    return text.count("\n", 0, place) + 1
-
-
-def without_comments(latex):
-    """The same text, same length, comments blanked, so that what stands in them is not looked for."""
-    return re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match[0]), latex)
-
-
-# ---------------------------------------------------------------- what the prose refers to
-class Links:
-    """Labels, citations, values and figures of all pages: each must exist."""
-
-    def __init__(self, options):
-        self.options = options
-        self.bibliography = references.read(options.bibliography)
-        self.values = self.read_values(os.path.join(options.report, "values.tex"))
-        self.labels = {}       # label -> (page, anchor, number)
-        self.cited = {}        # key -> pages that cite it
-        self.figures = {}      # name in \includegraphics -> file
-        self.anchors = {}      # noweb's label -> (page file, anchor)
-
-    @staticmethod
-    def read_values(path):
-        values = {}
-        if os.path.exists(path):
-            with open(path, encoding="utf-8") as lines:
-                for number, line in enumerate(lines, 1):
-                    if line.strip() and not line.startswith("%"):
-                        entry = MALUSVAL.match(line)
-                        if not entry:
-                            raise Problem(path, number, r"expected \malusval{ID.name}{text}")
-                        values[entry[1]] = entry[2]
-        return values
-
-    def find_figure(self, name):
-        for folder in (self.options.report, os.path.join(self.options.book, "figures")):
-            for ending in (".svg", ".png"):
-                path = os.path.join(folder, name + ending)
-                if os.path.isfile(path):
-                    return path
-        return None
-
-    def check(self, pages):
-        """Everything the prose refers to exists; all that does not is told at once."""
-        problems, defined = [], {}
-        for page in pages:
-            for label in LABEL.finditer(without_comments(page.latex)):
-                if label[1] in defined:
-                    problems.append(Problem(page.source, line_of(page.latex, label.start()),
-                                            f"label {label[1]} is also defined in {defined[label[1]]}"))
-                defined[label[1]] = page.source
-        for page in pages:
-            text = without_comments(page.latex)
-
-            def complain(match, sentence):
-                problems.append(Problem(page.source, line_of(text, match.start()), sentence))
-
-            for match in REFERENCE.finditer(text):
-                if match[1] not in defined:
-                    complain(match, rf"{match[0]}: no chapter has \label{{{match[1]}}}")
-            for match in VALUE.finditer(text):
-                if match[1] not in self.values:
-                    complain(match, rf"{match[0]}: `malus reproduce` left no such value")
-            for match in CITATION.finditer(text):
-                for key in match[1].split(","):
-                    if key not in self.bibliography:
-                        complain(match, f"{match[0]}: {self.options.bibliography} has no entry {key}")
-                    elif page not in self.cited.setdefault(key, []):
-                        self.cited[key].append(page)
-            for match in FIGURE.finditer(text):
-                self.figures[match[1]] = self.find_figure(match[1])
-                if not self.figures[match[1]]:
-                    complain(match, rf"{match[0]}: neither {self.options.report} nor {self.options.book}/figures"
-                                    f" has {match[1]}.svg or .png")
-        stop_if_any(problems)
-
-    def substitute(self, page):
-        """Puts values into the prose and leaves a hole for each figure. (Comments may name what does not exist.)"""
-        latex = VALUE.sub(lambda match: self.values.get(match[1], ""), page.latex)
-        page.latex = FIGURE.sub(lambda match: rf"\litfigure{{{match[1]}}}", latex)
-
-    def bibliography_page(self):
-        keys = references.ordered(self.cited, self.bibliography)
-        self.numbers = {key: number for number, key in enumerate(keys, 1)}
-        entries = [rf"\litentry{{{key}}}{{{references.latex(self.bibliography[key])}}}" for key in keys]
-        return Page("bibliography", self.options.bibliography, "\\chapter*{Bibliography}\n" + "\n".join(entries))
-
-    def to_label(self, page):
-        def address(label):
-            home, anchor, number = self.labels[label]
-            title = "" if home is page else home.source
-            return ("" if home is page else home.file) + "#" + anchor, number or "here", title
-        return address
-
-    def to_entry(self, key):
-        entry = self.bibliography[key]
-        title = f"{references.family(entry)} {entry.get('year', '')}".strip()
-        return f"bibliography.html#{key}", str(self.numbers[key]), title
-
 
 # ---------------------------------------------------------------- from LaTeXML's HTML to a page's body
 class Finisher:
@@ -232,66 +109,26 @@ def size_of(path):
 
 
 # ---------------------------------------------------------------- the book
-class Part:
-    """A floor of the house: its folder, title, what it is about, and its pages."""
-
-    def __init__(self, folder, title, about):
-        self.folder, self.title, self.about = folder, title, about
-        self.pages = []
-
-
-class Book:
-    """All pages, in parts, and the layout around them."""
+class HtmlBook(book.Book):
+    """The book, laid out as pages of HTML."""
 
     def __init__(self, options):
-        self.options = options
-        self.about = configparser.ConfigParser()
-        self.about.read(os.path.join(options.book, "book.ini"), encoding="utf-8")
+        super().__init__(options)
+        self.listings = listing.HtmlListing(self.chapters)
         with open(os.path.join(options.book, "page.html"), encoding="utf-8") as file:
             self.template = string.Template(file.read())
-        self.chapters = noweb.read(options.chapters)
-        self.links = Links(options)
-        self.listings = listing.Listing(self.chapters)
-        self.parts, self.front, self.back = [], [], []
 
-    def gather(self):
-        """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
-        parts, number = {}, 0
-        for chapter in self.chapters:
-            folder = os.path.basename(os.path.dirname(chapter.path))
-            name = os.path.splitext(os.path.basename(chapter.path))[0]
-            latex = chapter.latex()
-            numbered = re.search(r"\\chapter\{", latex) is not None
-            number += numbered
-            in_front = folder not in self.about
-            page = Page(name if in_front else f"{folder}-{name}", chapter.path, latex, number if numbered else 0)
-            if in_front:
-                self.front.append(page)
-            else:
-                if folder not in parts:
-                    about = self.about[folder]
-                    parts[folder] = Part(folder, about["title"], about["about"])
-                    self.parts.append(parts[folder])
-                parts[folder].pages.append(page)
-            self.name_chunks(chapter, page)
+    def to_label(self, page):
+        def address(label):
+            home, anchor, number = self.links.labels[label]
+            title = "" if home is page else home.source
+            return ("" if home is page else home.file) + "#" + anchor, number or "here", title
+        return address
 
-    def name_chunks(self, chapter, page):
-        problems, taken = [], set()
-        for chunk in chapter.chunks:
-            anchor = "chunk-" + latexml.slug(noweb.plain(chunk.name))
-            count = 1
-            while (anchor if count == 1 else f"{anchor}-{count}") in taken:
-                count += 1
-            anchor = anchor if count == 1 else f"{anchor}-{count}"
-            taken.add(anchor)
-            self.links.anchors[chunk.label] = (page.file, anchor)
-            problems += [Problem(chapter.path, 0, f"chunk <<{name}>> is used in <<{chunk.name}>> but never defined")
-                         for name, label in chunk.used_chunks if not label]
-        stop_if_any(problems)
-
-    def pages(self):
-        """In reading order."""
-        return self.front + [page for part in self.parts for page in part.pages] + self.back
+    def to_entry(self, key):
+        entry = self.links.bibliography[key]
+        title = f"{references.family(entry)} {entry.get('year', '')}".strip()
+        return f"bibliography.html#{key}", str(self.links.numbers[key]), title
 
     def convert(self):
         """Prose to HTML: check what it refers to, then LaTeXML's two steps, both for many chapters at once."""
@@ -306,7 +143,7 @@ class Book:
             page.root = converter.to_xml(page.name, page.source, page.latex, page.chapter)
 
         def second(page):
-            latexml.resolve(page.root, self.links.to_label(page), self.links.to_entry)
+            latexml.resolve(page.root, self.to_label(page), self.to_entry)
             return converter.to_html(page.name, page.source, page.root)
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -432,21 +269,12 @@ def all_of(pool, work, items):
     return results
 
 
-def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("out", "work", "book", "report", "bibliography"):
-        arguments.add_argument("--" + name, required=True)
-    arguments.add_argument("chapters", nargs="+")
-    options = arguments.parse_args()
-    try:
-        book = Book(options)
-        book.gather()
-        book.convert()
-        book.write()
-    except (Problem, Problems) as found:
-        print(found, file=sys.stderr)
-        sys.exit(1)
+def main(options):
+    whole = HtmlBook(options)
+    whole.gather()
+    whole.convert()
+    whole.write()
 
 
 if __name__ == "__main__":
-    main()
+    book.run(__doc__, main)

@@ -1,0 +1,195 @@
+"""What a book is before it is rendered: its pages in parts, what they refer to, and its chunks.
+
+Two renderers stand on this: weave.py makes the HTML, print.py the PDF.
+"""
+import argparse
+import configparser
+import os
+import re
+import sys
+
+import latexml
+import noweb
+import references
+from problems import Problem, Problems, stop_if_any
+
+LABEL = re.compile(r"\\label\{([^}]*)\}")
+REFERENCE = re.compile(r"\\(?:eq)?ref\{([^}]*)\}")
+CITATION = re.compile(r"\\cite(?:\[[^\]]*\])?\{([^}]*)\}")
+VALUE = re.compile(r"\\val\{([^}]*)\}")
+FIGURE = re.compile(r"\\includegraphics(?:\[[^\]]*\])?\{([^}]*)\}")
+MALUSVAL = re.compile(r"\\malusval\{([^}]*)\}\{(.*)\}\s*$")
+
+
+class Page:
+    """One page of the book; source is the file to edit, chapter its number (0: none)."""
+
+    def __init__(self, name, source, latex, chapter=0):
+        self.name, self.source, self.latex, self.chapter = name, source, latex, chapter
+        self.file = name + ".html"
+        self.title = self.body = ""
+        self.sections = []  # (anchor, title)
+        self.root = None    # LaTeXML's XML
+
+
+def line_of(text, place):
+    return text.count("\n", 0, place) + 1
+
+
+def without_comments(latex):
+    """The same text, same length, comments blanked, so that what stands in them is not looked for."""
+    return re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match[0]), latex)
+
+
+# ---------------------------------------------------------------- what the prose refers to
+class Links:
+    """Labels, citations, values and figures of all pages: each must exist."""
+
+    def __init__(self, options):
+        self.options = options
+        self.bibliography = references.read(options.bibliography)
+        self.values = self.read_values(os.path.join(options.report, "values.tex"))
+        self.labels = {}       # label -> (page, anchor, number)
+        self.cited = {}        # key -> pages that cite it
+        self.figures = {}      # name in \includegraphics -> file
+        self.anchors = {}      # noweb's label -> (page file, anchor)
+
+    @staticmethod
+    def read_values(path):
+        values = {}
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as lines:
+                for number, line in enumerate(lines, 1):
+                    if line.strip() and not line.startswith("%"):
+                        entry = MALUSVAL.match(line)
+                        if not entry:
+                            raise Problem(path, number, r"expected \malusval{ID.name}{text}")
+                        values[entry[1]] = entry[2]
+        return values
+
+    def find_figure(self, name):
+        for folder in (self.options.report, os.path.join(self.options.book, "figures")):
+            for ending in (".svg", ".png"):
+                path = os.path.join(folder, name + ending)
+                if os.path.isfile(path):
+                    return path
+        return None
+
+    def check(self, pages):
+        """Everything the prose refers to exists; all that does not is told at once."""
+        problems, defined = [], {}
+        for page in pages:
+            for label in LABEL.finditer(without_comments(page.latex)):
+                if label[1] in defined:
+                    problems.append(Problem(page.source, line_of(page.latex, label.start()),
+                                            f"label {label[1]} is also defined in {defined[label[1]]}"))
+                defined[label[1]] = page.source
+        for page in pages:
+            text = without_comments(page.latex)
+
+            def complain(match, sentence):
+                problems.append(Problem(page.source, line_of(text, match.start()), sentence))
+
+            for match in REFERENCE.finditer(text):
+                if match[1] not in defined:
+                    complain(match, rf"{match[0]}: no chapter has \label{{{match[1]}}}")
+            for match in VALUE.finditer(text):
+                if match[1] not in self.values:
+                    complain(match, rf"{match[0]}: `malus reproduce` left no such value")
+            for match in CITATION.finditer(text):
+                for key in match[1].split(","):
+                    if key not in self.bibliography:
+                        complain(match, f"{match[0]}: {self.options.bibliography} has no entry {key}")
+                    elif page not in self.cited.setdefault(key, []):
+                        self.cited[key].append(page)
+            for match in FIGURE.finditer(text):
+                self.figures[match[1]] = self.find_figure(match[1])
+                if not self.figures[match[1]]:
+                    complain(match, rf"{match[0]}: neither {self.options.report} nor {self.options.book}/figures"
+                                    f" has {match[1]}.svg or .png")
+        stop_if_any(problems)
+
+    def substitute(self, page):
+        """Puts values into the prose and leaves a hole for each figure. (Comments may name what does not exist.)"""
+        latex = VALUE.sub(lambda match: self.values.get(match[1], ""), page.latex)
+        page.latex = FIGURE.sub(lambda match: rf"\litfigure{{{match[1]}}}", latex)
+
+    def bibliography_page(self):
+        """The entries that are cited, numbered by name and year."""
+        keys = references.ordered(self.cited, self.bibliography)
+        self.numbers = {key: number for number, key in enumerate(keys, 1)}
+        entries = [rf"\litentry{{{key}}}{{{references.latex(self.bibliography[key])}}}" for key in keys]
+        return Page("bibliography", self.options.bibliography, "\\chapter*{Bibliography}\n" + "\n".join(entries))
+
+
+# ---------------------------------------------------------------- the book
+class Part:
+    """A floor of the house: its folder, title, what it is about, and its pages."""
+
+    def __init__(self, folder, title, about):
+        self.folder, self.title, self.about = folder, title, about
+        self.pages = []
+
+
+class Book:
+    """All pages, in parts."""
+
+    def __init__(self, options):
+        self.options = options
+        self.about = configparser.ConfigParser()
+        self.about.read(os.path.join(options.book, "book.ini"), encoding="utf-8")
+        self.chapters = noweb.read(options.chapters)
+        self.links = Links(options)
+        self.parts, self.front, self.back = [], [], []
+
+    def gather(self):
+        """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
+        parts, number = {}, 0
+        for chapter in self.chapters:
+            folder = os.path.basename(os.path.dirname(chapter.path))
+            name = os.path.splitext(os.path.basename(chapter.path))[0]
+            latex = chapter.latex()
+            numbered = re.search(r"\\chapter\{", latex) is not None
+            number += numbered
+            in_front = folder not in self.about
+            page = Page(name if in_front else f"{folder}-{name}", chapter.path, latex, number if numbered else 0)
+            if in_front:
+                self.front.append(page)
+            else:
+                if folder not in parts:
+                    about = self.about[folder]
+                    parts[folder] = Part(folder, about["title"], about["about"])
+                    self.parts.append(parts[folder])
+                parts[folder].pages.append(page)
+            self.name_chunks(chapter, page)
+
+    def name_chunks(self, chapter, page):
+        problems, taken = [], set()
+        for chunk in chapter.chunks:
+            anchor = "chunk-" + latexml.slug(noweb.plain(chunk.name))
+            count = 1
+            while (anchor if count == 1 else f"{anchor}-{count}") in taken:
+                count += 1
+            anchor = anchor if count == 1 else f"{anchor}-{count}"
+            taken.add(anchor)
+            self.links.anchors[chunk.label] = (page.file, anchor)
+            problems += [Problem(chapter.path, 0, f"chunk <<{name}>> is used in <<{chunk.name}>> but never defined")
+                         for name, label in chunk.used_chunks if not label]
+        stop_if_any(problems)
+
+    def pages(self):
+        """In reading order."""
+        return self.front + [page for part in self.parts for page in part.pages] + self.back
+
+
+def run(description, render):
+    """The command line of both renderers; problems go to the standard error, and the exit status is then 1."""
+    arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("out", "work", "book", "report", "bibliography"):
+        arguments.add_argument("--" + name, required=True)
+    arguments.add_argument("chapters", nargs="+")
+    try:
+        render(arguments.parse_args())
+    except (Problem, Problems) as found:
+        print(found, file=sys.stderr)
+        sys.exit(1)
