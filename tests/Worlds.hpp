@@ -1,0 +1,93 @@
+// Small worlds of one band for the tests of the radiometry.
+#pragma once
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "imaging/CDRadiometry.hpp"
+#include "world/CDGeometry.hpp"
+#include "world/CDWorld.hpp"
+
+namespace malus::testing {
+inline const CDSpectralGridPtr& oneBand() {
+  static const CDSpectralGridPtr grid = CDSpectralGrid::make({CDSpectralLocation(550.0)});
+  return grid;
+}
+
+inline CDSpectralVector<CDStokesVector> spectrumOf(const CDStokesVector& value) {
+  return CDSpectralVector<CDStokesVector>(oneBand(), value);
+}
+
+// Quadrilaterals abcd, counter-clockwise seen from outside; facet and material "0", "1", ...
+struct Quad {
+  CDVector a, b, c, d;
+  std::shared_ptr<const CDBRDFModel> brdf;
+};
+
+inline CDWorld worldOf(const std::vector<Quad>& quads,
+                       std::shared_ptr<const CDSky> sky = nullptr) {
+  CDWorld world;
+  world.grid = oneBand();
+  CDGeometryBuilder builder;
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    CDMesh mesh;
+    mesh.vertices = {quads[i].a, quads[i].b, quads[i].c, quads[i].d};
+    mesh.facets = mesh.materials = {std::to_string(i)};
+    mesh.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
+    builder.addMesh(mesh, {});
+    world.materials.push_back({std::to_string(i), quads[i].brdf});
+  }
+  world.geometry = std::move(builder).build();
+  world.sky = sky ? std::move(sky) : blackSky(oneBand());
+  return world;
+}
+
+inline std::shared_ptr<const CDSky> uniformSky(double radiance) {
+  return std::make_shared<CDUniformSky>(spectrumOf(radiance));
+}
+
+// The box [low, high]^3 with normals inwards: bottom, top, west, east, south, north.
+inline std::vector<Quad> boxOf(const std::array<std::shared_ptr<const CDBRDFModel>, 6>& brdf,
+                               double low = -1, double high = 1) {
+  const double l = low, h = high;
+  return {{{l, l, l}, {h, l, l}, {h, h, l}, {l, h, l}, brdf[0]},
+          {{l, l, h}, {l, h, h}, {h, h, h}, {h, l, h}, brdf[1]},
+          {{l, l, l}, {l, h, l}, {l, h, h}, {l, l, h}, brdf[2]},
+          {{h, l, l}, {h, l, h}, {h, h, h}, {h, h, l}, brdf[3]},
+          {{l, l, l}, {l, l, h}, {h, l, h}, {h, l, l}, brdf[4]},
+          {{l, h, l}, {h, h, l}, {h, h, h}, {l, h, h}, brdf[5]}};
+}
+
+// A ray that sees the point `at` from the direction `to_viewer`.
+inline CDRadiometry::Ray looking(const CDVector& at, const CDVector& to_viewer,
+                                 const CDVector& horizontal, std::uint64_t pixel = 0,
+                                 double distance = 5) {
+  const CDVector d = normalized(to_viewer);
+  return {at + d * distance, -d, horizontal, pixel, 0, 0};
+}
+
+// Mean of each Stokes component over `pixels` keys, and the standard error of that mean.
+struct Estimate {
+  std::array<double, 4> mean{}, error{};
+};
+
+inline Estimate estimate(const CDWorld& world, const CDRadiometryOptions& options,
+                         CDRadiometry::Ray ray, std::uint64_t pixels) {
+  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), options);
+  std::array<double, 4> sum{}, squares{}, out{};
+  for (ray.pixel = 0; ray.pixel < pixels; ++ray.pixel) {
+    radiometry.radiance({&ray, 1}, out);
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += out[c], squares[c] += out[c] * out[c];
+  }
+  Estimate made;
+  const auto n = static_cast<double>(pixels);
+  for (std::size_t c = 0; c < 4; ++c) {
+    made.mean[c] = sum[c] / n;
+    made.error[c] = std::sqrt(std::max(0.0, squares[c] / n - made.mean[c] * made.mean[c]) / n);
+  }
+  return made;
+}
+}  // namespace malus::testing
