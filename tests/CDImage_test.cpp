@@ -1,0 +1,177 @@
+// Cubes on disk and pictures to look at (nw/imaging/CDImage.nw, nw/imaging/Quicklooks.nw).
+#include "imaging/CDImage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "Scratch.hpp"
+#include "imaging/Quicklooks.hpp"
+#include "light/CDError.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr std::size_t width = 6, height = 4;
+const CDSpectralGridPtr bands = CDSpectralGrid::make(
+    {CDSpectralLocation(CDSpectralPoint(450), CDBandResponse::gaussian(20)), CDSpectralLocation(CDSpectralPoint(550)),
+     CDSpectralLocation(CDSpectralPoint(650.5))});
+const CDCubeHeader header = stokesHeader(width, height, *bands, "W m^-2 sr^-1 nm^-1");
+
+float number(std::size_t x, std::size_t y, std::size_t channel) {
+  return float(100 * y + 10 * x) + float(channel) / 16;
+}
+std::vector<float> tileOf(const CDTile& t) {
+  std::vector<float> numbers;
+  for (std::size_t y = t.y0; y < t.y1; ++y)
+    for (std::size_t x = t.x0; x < t.x1; ++x)
+      for (std::size_t c = 0; c < header.channels.size(); ++c) numbers.push_back(number(x, y, c));
+  return numbers;
+}
+const std::vector<CDTile> tiles{{0, 0, 4, 2}, {4, 0, 6, 2}, {0, 2, 6, 4}};
+
+void writeAll(const std::filesystem::path& path) {
+  CDCubeWriter writer(path, header);
+  for (const CDTile& t : tiles) writer.write(t, tileOf(t));
+  writer.finish();
+}
+std::string complaint(const std::filesystem::path& path) {
+  try {
+    readCube(path);
+  } catch (const CDInputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+int python(const std::string& program, const std::filesystem::path& path) {
+  return std::system(("/usr/bin/python3 -c '" + program + "' " + path.string()).c_str());
+}
+}  // namespace
+
+TEST(CDImageIdentity, ComesBackAsItWasWritten) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  const CDCube cube = readCube(scratch / "x.img");
+  EXPECT_EQ(cube.header, header);
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::size_t c = 0; c < 12; ++c) ASSERT_EQ(cube.at(x, y, c), number(x, y, c));
+  EXPECT_EQ(readCube(scratch / "x.img.hdr").data, cube.data);
+  EXPECT_EQ(filesBelow(scratch.path), 2u);  // no .part, no journal
+}
+
+TEST(CDImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
+  const Scratch scratch;
+  writeAll(scratch / "whole.img");
+  {
+    CDCubeWriter writer(scratch / "x.img", header);
+    writer.write(tiles[0], tileOf(tiles[0]));
+    writer.write(tiles[2], tileOf(tiles[2]));
+    EXPECT_THROW(writer.finish(), CDMathError);
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "x.img"));
+  {  // one of the two is damaged on disk: its checksum finds it out
+    std::fstream file(scratch / "x.img.part", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(4);
+    file.put('?');
+  }
+  CDCubeWriter again(scratch / "x.img", header, true);
+  EXPECT_FALSE(again.finished(tiles[0]));
+  EXPECT_FALSE(again.finished(tiles[1]));
+  EXPECT_TRUE(again.finished(tiles[2]));
+  again.write(tiles[1], tileOf(tiles[1]));
+  again.write(tiles[0], tileOf(tiles[0]));
+  again.finish();
+  EXPECT_EQ(contents(scratch / "x.img"), contents(scratch / "whole.img"));
+}
+
+TEST(CDImageIdentity, AnotherCubeIsNotGoneOnWith) {
+  const Scratch scratch;
+  { CDCubeWriter writer(scratch / "x.img", header); }
+  CDCubeHeader other = header;
+  other.wavelength_nm[0] = 451;
+  EXPECT_THROW(CDCubeWriter(scratch / "x.img", other, true), CDInputError);
+  EXPECT_NO_THROW(CDCubeWriter(scratch / "x.img", header, true));
+  EXPECT_THROW(CDCubeWriter("/dev/null/x.img", header), CDInputError);
+}
+
+TEST(CDImageIdentity, BadCubesAreNamed) {
+  const Scratch scratch;
+  EXPECT_NE(complaint(scratch / "none.img").find("not the header of an ENVI cube"), std::string::npos);
+  writeAll(scratch / "x.img");
+  EXPECT_EQ(complaint(scratch / "x.img"), "none");
+  const std::string text = contents(scratch / "x.img.hdr");
+  const auto spoil = [&](const std::string& from, const std::string& to) {
+    std::string bad = text;
+    bad.replace(bad.find(from), from.size(), to);
+    put(scratch / "x.img.hdr", bad);
+    return complaint(scratch / "x.img");
+  };
+  EXPECT_NE(spoil("data type = 4", "data type = 5").find("data type = 5: is not supported"), std::string::npos);
+  EXPECT_NE(spoil("samples = 6", "samples = 7").find("should hold"), std::string::npos);
+  EXPECT_NE(spoil("samples = 6", "samples = six").find("samples"), std::string::npos);
+  EXPECT_NE(spoil("S0 450, ", "").find("11 names"), std::string::npos);
+}
+
+// Other people's readers: GDAL and Spectral Python, as Debian ships them.
+TEST(CDImagePublished, GdalReadsNamesWavelengthsAndNumbers) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  EXPECT_EQ(python("import sys\nfrom osgeo import gdal\nd = gdal.Open(sys.argv[1])\n"
+                   "assert (d.RasterXSize, d.RasterYSize, d.RasterCount) == (6, 4, 12)\n"
+                   "b = d.GetRasterBand(12)\n"
+                   "assert b.GetDescription().startswith(\"S3 650.5\"), b.GetDescription()\n"
+                   "assert float(b.GetMetadataItem(\"wavelength\")) == 650.5\n"
+                   "assert b.ReadAsArray()[3, 5] == 350.6875\n",
+                   scratch / "x.img"),
+            0);
+}
+
+TEST(CDImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  const std::string program =
+      "import sys, spectral\nd = spectral.open_image(sys.argv[1] + \".hdr\")\n"
+      "assert d.shape == (4, 6, 12), d.shape\n"
+      "assert d.bands.centers[0] == 450 and d.bands.bandwidths[0] == 20 and d.bands.band_unit == \"Nanometers\"\n"
+      "assert d.metadata[\"band names\"][5] == \"S1 550\"\n"
+      "assert d[2, 3, 1] == ";
+  EXPECT_EQ(python(program + "230.0625\n", scratch / "x.img"), 0);
+  EXPECT_NE(python(program + "230\n", scratch / "x.img"), 0);  // the negative control
+}
+
+TEST(CDImagePublished, SpectralExrHasTheNamesOfItsConvention) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  writeSpectralEXR(readCube(scratch / "x.img"), scratch / "x.exr");
+  const auto in = OIIO::ImageInput::open((scratch / "x.exr").string());
+  ASSERT_TRUE(in) << OIIO::geterror();
+  const OIIO::ImageSpec& spec = in->spec();
+  EXPECT_EQ(spec.get_string_attribute("spectralLayoutVersion"), "1.0");
+  EXPECT_EQ(spec.get_string_attribute("polarisationHandedness"), "right");
+  EXPECT_EQ(spec.get_string_attribute("emissiveUnits"), "W.m^-2.sr^-1");
+  const int channel = spec.channelindex("S2.650,500000nm");
+  ASSERT_GE(channel, 0);
+  std::vector<float> numbers(width * height * 12);
+  ASSERT_TRUE(in->read_image(0, 0, 0, 12, OIIO::TypeDesc::FLOAT, numbers.data()));
+  EXPECT_EQ(numbers[(1 * width + 2) * 12 + std::size_t(channel)], number(2, 1, 10));
+}
+
+TEST(QuicklooksIdentity, DrawsEveryQuantityWithItsScale) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  CDCube cube = readCube(scratch / "x.img");
+  cube.data[5] = std::numeric_limits<float>::quiet_NaN();  // S1 of the second band, first pixel
+  const auto made = quicklooks(cube, 1, scratch / "q");
+  ASSERT_EQ(made.size(), 8u);
+  const auto in = OIIO::ImageInput::open((scratch / "q.S1.png").string());
+  ASSERT_TRUE(in);
+  EXPECT_EQ(in->spec().width, int(width) + 64);
+  std::vector<unsigned char> rgb((width + 64) * height * 3);
+  ASSERT_TRUE(in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data()));
+  EXPECT_EQ(rgb[1], 255);  // the green of what is no number
+  EXPECT_EQ(rgb[0], 0);
+  EXPECT_THROW(quicklooks(cube, 3, scratch / "q"), CDMathError);
+}
