@@ -12,12 +12,14 @@ PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
 BOOK    := latexml fonts-texgyre fonts-texgyre-math
+# other people's readers of our cubes, for the tests alone
+TEST    := python3-gdal python3-spectral
 
 # What the book on paper wants besides; asked for only by make pdf.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fresh-machine clean help
-.PHONY: need-program need-book need-paper
+.PHONY: need-program need-book need-test need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
@@ -27,7 +29,7 @@ all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-book $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's as well
+test: need-test $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's as well
 	@cmake --build $(BUILD) -j $(JOBS)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
@@ -55,18 +57,18 @@ format: ## let clang-format format the chapters' code and the tests
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
 	@cmake --build $(BUILD) -j $(JOBS) --target dist
 
-sanitize: need-book ## all tests under the address and undefined-behaviour sanitizers
+sanitize: need-test ## all tests under the address and undefined-behaviour sanitizers
 	@cmake --preset sanitize $(GENERATOR) >/dev/null
 	@cmake --build build-sanitize -j $(JOBS)
 	@ctest --test-dir build-sanitize -j $(JOBS) --output-on-failure --progress
 
-clang: need-book ## all tests as compiled by clang++
+clang: need-test ## all tests as compiled by clang++
 	@$(NEED) clang
 	@cmake --preset clang $(GENERATOR) >/dev/null
 	@cmake --build build-clang -j $(JOBS)
 	@ctest --test-dir build-clang -j $(JOBS) --output-on-failure --progress
 
-coverage: need-book ## which lines of nw/ the tests reach
+coverage: need-test ## which lines of nw/ the tests reach
 	@cmake --preset coverage $(GENERATOR) >/dev/null
 	@cmake --build build-coverage -j $(JOBS)
 	@find build-coverage -name '*.gcda' -delete
@@ -94,6 +96,9 @@ need-program:
 
 need-book:
 	@$(NEED) $(PROGRAM) $(BOOK)
+
+need-test:
+	@$(NEED) $(PROGRAM) $(BOOK) $(TEST)
 
 need-paper:
 	@$(NEED) $(PROGRAM) $(BOOK) $(PAPER)
