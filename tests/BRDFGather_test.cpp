@@ -1,0 +1,135 @@
+// The light of many directions at once (nw/matter/CDBRDFModel.nw and the two models that have a fast way).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "light/CDError.hpp"
+#include "matter/BRDFDiffuse.hpp"
+#include "matter/BRDFTorranceSparrow.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double pi = std::numbers::pi;
+constexpr CDTorranceSparrowOptions with(CDShadowing shadowing, CDDiffuseTerm diffuse, bool polarized = true) {
+  return {shadowing, diffuse, polarized};
+}
+constexpr CDTorranceSparrowOptions specular_only = with(CDShadowing::vGroove, CDDiffuseTerm::none);
+constexpr CDTorranceSparrowOptions as_thesis = with(CDShadowing::vGroove, CDDiffuseTerm::thesis);
+constexpr CDTorranceSparrowOptions reciprocal = with(CDShadowing::vGroove, CDDiffuseTerm::reciprocal);
+}  // namespace
+
+// ---- many directions at once, in single precision, against the plain sum in double precision
+namespace {
+struct Directions {
+  std::vector<float> x, y, z, weight;
+  explicit Directions(std::size_t count, std::uint64_t seed = 1) {
+    CDRandom random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+      const CDVector d = CDVector::fromAngles(0.5 * pi * random.uniform(), 2 * pi * random.uniform());
+      x.push_back(float(d.x)), y.push_back(float(d.y)), z.push_back(float(d.z));
+      weight.push_back(float(d.z * 2 * pi / double(count)));
+    }
+  }
+  CDLightDirections view() const { return {x.size(), x.data(), y.data(), z.data(), weight.data()}; }
+};
+
+/// Copper and glass, smooth and rough, in runs of equal roughness.
+BRDFTorranceSparrow mixture(std::size_t bands, const CDTorranceSparrowOptions& options) {
+  std::vector<double> nm, n, k, sigma;
+  for (std::size_t j = 0; j < bands; ++j) {
+    nm.push_back(400 + double(j));
+    const bool glass = j % 5 == 4;
+    n.push_back(glass ? 1.5 : 0.4 + 0.01 * double(j)), k.push_back(glass ? 0 : 2.9 + 0.01 * double(j));
+    sigma.push_back(j < bands / 2 ? 0.1 : 0.3);
+  }
+  const auto grid = CDSpectralGrid::make(nm);
+  return {CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k), CDSpectralVector<double>(grid, sigma),
+          options};
+}
+
+CDSpectralVector<CDStokesVector> whiteLight(const CDSpectralGridPtr& grid) {
+  CDSpectralVector<CDStokesVector> light(grid);
+  for (std::size_t j = 0; j < light.size(); ++j) light[j] = CDStokesVector(1 + 0.01 * double(j));
+  return light;
+}
+
+/// Largest difference of any component, in units of S0.
+double apart(const CDSpectralVector<CDStokesVector>& a, const CDSpectralVector<CDStokesVector>& b) {
+  double largest = 0;
+  for (std::size_t j = 0; j < a.size(); ++j)
+    for (int c = 0; c < 4; ++c) {
+      const double difference = std::abs(CDStokesVector(a.at(j)).getStokes(c) - CDStokesVector(b.at(j)).getStokes(c));
+      if (!(difference <= largest * CDStokesVector(b.at(j)).getScalar()))
+        largest = difference / CDStokesVector(b.at(j)).getScalar();
+    }
+  return largest;
+}
+}  // namespace
+
+// 3e-6: single precision's 6e-8 through an exponent of up to some tens.
+TEST(GatherIdentity, GatherIsTheSumOfScatter) {
+  for (const auto& options : {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
+                              with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+    for (const std::size_t bands : {1u, 2u, 11u, 300u})
+      for (const std::size_t count : {90u, 128u, 333u}) {
+        const BRDFTorranceSparrow model = mixture(bands, options);
+        const auto light = whiteLight(model.grid());
+        const Directions from(count, bands + count);
+        for (const double zenith : {0.0, 0.01, 0.7, 1.4}) {
+          CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+          const CDVector viewer = CDVector::fromAngles(zenith, 2);
+          model.gather(viewer, from.view(), light, fast);
+          model.CDBRDFModel::gather(viewer, from.view(), light, plain);
+          EXPECT_LT(apart(fast, plain), 3e-6) << bands << " bands " << count << " directions at " << zenith;
+        }
+      }
+}
+
+// With the viewer's own direction, the mirror's, both, and the horizon.
+TEST(GatherIdentity, GatherAtSingularDirections) {
+  const BRDFTorranceSparrow model = mixture(2, as_thesis);
+  const auto light = whiteLight(model.grid());
+  for (const double zenith : {0.0, 1e-4, 0.5, 1.5}) {
+    const CDVector v = CDVector::fromAngles(zenith, 1);
+    Directions from(0);
+    for (const CDVector& d : {v, CDVector{-v.x, -v.y, v.z}, CDVector{0, 0, 1}, CDVector{1, 0, 0}, CDVector{0, 0.6, -0.8}})
+      from.x.push_back(float(d.x)), from.y.push_back(float(d.y)), from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
+    CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+    model.gather(v, from.view(), light, fast);
+    model.CDBRDFModel::gather(v, from.view(), light, plain);
+    EXPECT_LT(apart(fast, plain), 3e-6) << zenith;
+  }
+}
+
+TEST(GatherIdentity, NegativeControlGatherSeesATurnedViewer) {
+  const BRDFTorranceSparrow model = mixture(11, as_thesis);
+  const auto light = whiteLight(model.grid());
+  const Directions from(90);
+  CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+  model.gather(CDVector::fromAngles(0.7, 2), from.view(), light, fast);
+  model.CDBRDFModel::gather(CDVector::fromAngles(0.7, 2.001), from.view(), light, plain);
+  EXPECT_GT(apart(fast, plain), 3e-5);
+}
+
+TEST(GatherIdentity, GatherRefusesPolarisedLight) {
+  const BRDFTorranceSparrow model = mixture(2, as_thesis);
+  auto light = whiteLight(model.grid());
+  light[1] = CDStokesVector(1, 0.5, 0, 0);
+  auto out = whiteLight(model.grid());
+  EXPECT_THROW(model.gather({0, 0, 1}, Directions(3).view(), light, out), CDMathError);
+}
+
+// Sums in another order: rounding only.
+TEST(GatherIdentity, OfLambertsSurface) {
+  const auto grid = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}), 0.5);
+  const Directions from(90);
+  CDSpectralVector<CDStokesVector> fast(grid), plain(grid);
+  model.gather({0, 0, 1}, from.view(), whiteLight(grid), fast);
+  model.CDBRDFModel::gather({0, 0, 1}, from.view(), whiteLight(grid), plain);
+  EXPECT_LT(apart(fast, plain), 1e-14);
+  EXPECT_FALSE(fast.anyPolarized());
+}
