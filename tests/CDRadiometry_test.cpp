@@ -163,6 +163,65 @@ TEST(CDRadiometryInvariant, CircularLightWantsTwoReflections) {
   EXPECT_GT(twice.getScalar(), single.getScalar());
 }
 
+// Two mirrors: with two rays at the first surface the one that is not the sun's leaves at 45 degrees towards +x (a grid of one
+// cell). There stands a wall that reflects the sun. The product of matrices is written out, with rotations by angles.
+TEST(CDRadiometryIdentity, PeriscopeIsAProductOfMatrices) {
+  const CDVector wall_normal = normalized({-1, 0.35, -0.2}), d = normalized({1, 0, 1});
+  const CDVector hit = d * 3, side = normalized(cross({0, 0, 1}, wall_normal));
+  const CDTransform wall{side, cross(wall_normal, side), wall_normal, hit};
+  CDWorld world = worldOf({{{}, copper()}, {wall, copper(0.3)}});
+  const CDVector to_sun = normalized({-1, 0.8, 0.3});
+  const CDStokesVector E(100, 20, 30, 60);
+  setSun(world, to_sun, E);
+  const CDVector to_viewer = normalized({-0.7, 0.4, 1});
+  const CDRayFrame camera = rayFrame(to_viewer, {0, 1, 0});
+  const auto product = [&](double slip) {
+    const auto local = [](const CDVector& n, const CDVector& v) {  // any axes with z = n will do: isotropic
+      const CDVector x = normalized(cross({0.1, 1, 0.3}, n));
+      return CDVector{dot(v, x), dot(v, cross(n, x)), dot(v, n)};
+    };
+    const auto matrix = [&](double sigma, const CDVector& n, const CDVector& in, const CDVector& out) {
+      return copper(sigma)->getBRDF(CDBRDFGeometry::fromDirections(local(n, in), local(n, out))).at(0);
+    };
+    const auto turned = [](CDStokesVector s, const CDRayFrame& from, const CDRayFrame& to, double more = 0) {
+      s.rotate(frameRotation(from, to) + more);
+      return s;
+    };
+    CDStokesVector s = turned(E, rayFrame(-to_sun, {0, 0, 1}), rayFrame(-to_sun, wall_normal));
+    s = dot(to_sun, wall_normal) * (matrix(0.3, wall_normal, to_sun, -d) * s);
+    s = turned(s, rayFrame(-d, wall_normal), rayFrame(-d, {0, 0, 1}), slip);
+    s = 2 * pi * std::sqrt(0.5) * (matrix(0.2, {0, 0, 1}, d, to_viewer) * s);
+    const CDStokesVector sun = to_sun.z * (matrix(0.2, {0, 0, 1}, to_sun, to_viewer) *
+                                           turned(E, rayFrame(-to_sun, {0, 0, 1}), rayFrame(-to_sun, {0, 0, 1})));
+    return turned(s + sun, rayFrame(to_viewer, {0, 0, 1}), camera);
+  };
+  const CDRadiometry::Ray ray{to_viewer * 2, -to_viewer, camera.s};
+  const CDStokesVector got = seen(world, {.sampling = CDSampling::grid, .rays = {2, 1}}, ray);
+  const CDStokesVector alone = seen(world, sun_only, ray);
+  EXPECT_GT(got.getScalar(), 1.0001 * alone.getScalar());  // the second mirror is there
+  EXPECT_LT(apart(got, product(0)), 1e-6 * got.getScalar());  // directions are single precision
+  EXPECT_GT(apart(got, product(0.01)), 1e-5 * got.getScalar());  // negative control: one frame turned a little
+}
+
+// The same bits for a ray alone, among others, and in another order.
+TEST(CDRadiometryInvariant, CompanyChangesNoBit) {
+  const CDTransform wall = CDTransform::translate({1, 0.3, 0.6}).after(CDTransform::rotate({0.3, 1, 0}, -1.1));
+  CDWorld world = worldOf({{{}, copper()}, {wall, copper()}}, 0.1);
+  setSun(world, {-0.5, 0.2, 1}, 1);
+  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), {.rays = {30, 10}});
+  std::vector<CDRadiometry::Ray> rays;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    rays.push_back(looking({0.02 * double(i) - 0.4, 0.1, 0}, {-0.4, 0.1, 1}, {0, 1, 0}));
+    rays.back().pixel = i;
+  }
+  std::vector<double> all(rays.size() * 4), one(4);
+  radiometry.radiance(rays, all);
+  for (std::size_t i = rays.size(); i-- > 0;) {
+    radiometry.radiance({&rays[i], 1}, one);
+    for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(one[c], all[4 * i + c]);
+  }
+}
+
 TEST(CDRadiometryIdentity, ShadowAndTruth) {
   CDWorld world = worldOf({{{}, copper()}, {CDTransform::translate({0, 0, 2}), copper()}}, 0.1);
   setSun(world, {0, 0, 1}, 1);

@@ -126,13 +126,26 @@ TEST(CDRayTracerInvariant, NothingLeaksBetweenTriangles) {
   }
 }
 
+// 2^-16 of the distance from the scene's middle, in map coordinates as well.
+TEST(CDRayTracerIdentity, AStartIsNearItsSurface) {
+  const CDVector at{500000, 4000000, 120};
+  const CDSceneGeometry scene = pyramids(at, true);
+  const CDRayTracer tracer(scene);
+  const CDHit hit = tracer.intersect(at + CDVector{1.9, 2.1, 5}, {0, 0, -1});
+  ASSERT_TRUE(hit);
+  const double off = dot(tracer.leave(hit.point, hit.normal) - hit.point, hit.normal);
+  EXPECT_GT(off, 1e-6);
+  EXPECT_LT(off, 1e-4);
+  EXPECT_FALSE(tracer.occluded(tracer.leave(hit.point, hit.normal), hit.normal));
+}
+
 TEST(CDRayTracerIdentity, AStartOffTheSurfaceDoesNotMeetIt) {
   const CDSceneGeometry scene = pyramids({}, true);
   const CDRayTracer tracer(scene);
   CDRandom random(3);
   for (int i = 0; i < 5000; ++i) {
     const CDHit hit = tracer.intersect({8 * random.uniform() - 4, 8 * random.uniform() - 4, 3}, {0, 0, -1});
-    const CDVector start = CDRayTracer::leave(hit.point, hit.normal);
+    const CDVector start = tracer.leave(hit.point, hit.normal);
     EXPECT_FALSE(tracer.occluded(start, hit.normal));
   }
 }
