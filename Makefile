@@ -46,8 +46,9 @@ reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without
 	@cat $(BUILD)/report/summary.txt
 
 bench: need-program $(BUILD)/CMakeCache.txt ## measure the inner loops beside bare loops, print the ratios
-	@cmake --build $(BUILD) -j $(JOBS) --target malus_bench
+	@cmake --build $(BUILD) -j $(JOBS) --target malus_bench malus_sky_bench
 	@$(BUILD)/malus_bench
+	@$(BUILD)/malus_sky_bench
 
 format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
