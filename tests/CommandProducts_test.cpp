@@ -1,0 +1,69 @@
+// malus products and malus info, from outside (nw/program/CommandProducts.nw).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "Program.hpp"
+#include "imaging/CDImage.hpp"
+
+using namespace malus;
+
+namespace {
+void cubeIn(const std::filesystem::path& directory) {
+  const auto bands = CDSpectralGrid::make({450, 550, 650});
+  CDCubeWriter writer(directory / "x.img", stokesHeader(4, 3, *bands, "W m^-2 sr^-1 nm^-1"));
+  std::vector<float> numbers;
+  for (int i = 0; i < 4 * 3 * 3; ++i)
+    for (const float v : {5.f, 3.f, -0.f, 4.f}) numbers.push_back(v);
+  writer.write({0, 0, 4, 3}, numbers);
+  writer.finish();
+}
+}  // namespace
+
+TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
+  const Scratch scratch;
+  cubeIn(scratch.path);
+  const Outcome outcome = malusIn(scratch.path, "products x.img");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const CDCube made = readCube(scratch / "x.products.img");
+  EXPECT_EQ(made.header.channels[4], "DoP 550");
+  EXPECT_FLOAT_EQ(made.at(1, 1, 0), 1.0f);
+  EXPECT_FLOAT_EQ(made.at(1, 1, 1), 0.6f);
+  EXPECT_FLOAT_EQ(made.at(1, 1, 2), 0.8f);
+  EXPECT_FLOAT_EQ(made.at(1, 1, 3), 0.0f);
+  EXPECT_TRUE(std::filesystem::exists(scratch / "x.550.DoLP.png"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "x.550.rgb.png"));
+  EXPECT_EQ(malusIn(scratch.path, "products x.img --all --out all").code, 0);
+  EXPECT_TRUE(std::filesystem::exists(scratch / "all/x.450.S3.png"));
+}
+
+TEST(CommandProductsIdentity, InfoSaysWhatIsThere) {
+  const Scratch scratch;
+  cubeIn(scratch.path);
+  const Outcome outcome = malusIn(scratch.path, "info x.img");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.out.find("4 x 3 pixels, 12 channels"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("S3 650"), std::string::npos);
+}
+
+TEST(CommandProductsIdentity, BadCubesAreOneLineAndLeaveNothing) {
+  const Scratch scratch;
+  cubeIn(scratch.path);
+  const auto before = filesBelow(scratch.path);
+  const auto complaint = [&](const std::string& arguments) {
+    const Outcome outcome = malusIn(scratch.path, arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(complaint("products none.img").find("none.img"), std::string::npos);
+  EXPECT_NE(complaint("products x.img --band 4").find("from 1 to 3"), std::string::npos);
+  std::filesystem::resize_file(scratch / "x.img", 100);
+  EXPECT_NE(complaint("info x.img").find("100 bytes"), std::string::npos);
+  cubeIn(scratch.path);
+  std::string text = contents(scratch / "x.img.hdr");
+  text.replace(text.find("S1 450"), 6, "Q  450");
+  put(scratch / "x.img.hdr", text);
+  EXPECT_NE(complaint("products x.img").find("channel 2 should be an S1"), std::string::npos);
+  EXPECT_EQ(filesBelow(scratch.path), before);
+}
