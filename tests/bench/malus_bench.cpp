@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "Bare.hpp"
+#include "Sampling.hpp"
 #include "light/CDSpectralVector.hpp"
 #include "matter/BRDFSampling.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
@@ -258,5 +259,6 @@ int main(int argc, char** argv) {
   RatioReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
+  printSamplings();
   return 0;
 }

@@ -1,0 +1,3 @@
+// What an error costs, by sampling: printed after the benchmarks.
+#pragma once
+void printSamplings();
