@@ -45,8 +45,9 @@ reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
 	@cat $(BUILD)/report/summary.txt
 
-bench: need-program $(BUILD)/CMakeCache.txt ## measure the inner loops beside bare loops, print the ratios
-	@cmake --build $(BUILD) -j $(JOBS) --target malus_bench malus_sky_bench
+bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops beside bare loops, print the ratios
+	@cmake --build $(BUILD) -j $(JOBS) --target malus_image_bench malus_bench malus_sky_bench
+	@$(BUILD)/malus_image_bench
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
 
