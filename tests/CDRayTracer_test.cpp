@@ -139,6 +139,39 @@ TEST(CDRayTracerIdentity, AStartIsNearItsSurface) {
   EXPECT_FALSE(tracer.occluded(tracer.leave(hit.point, hit.normal), hit.normal));
 }
 
+// Every ray from anywhere above to the tip and along the edges of a closed pyramid meets something.
+TEST(CDRayTracerInvariant, NothingLeaksAtCorners) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  CDRandom random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const double t = random.uniform();
+    const CDVector tip{-2, -2, 1}, foot{-3.5, -3.5, 0}, target = tip * t + foot * (1 - t);
+    const CDVector from{20 * random.uniform() - 10, 20 * random.uniform() - 10, 1.5 + 5 * random.uniform()};
+    const CDHit hit = tracer.intersect(from, normalized(target - from));
+    ASSERT_TRUE(hit);
+    EXPECT_LT(hit.t, (target - from).getLength() * (1 + 1e-5) + 1e-5);  // not what lies behind the edge
+  }
+}
+
+// However flat a ray leaves a face, its own face is not in its way.
+TEST(CDRayTracerIdentity, GrazingRaysLeaveTheirFace) {
+  const CDSceneGeometry scene = pyramids({}, false);
+  const CDRayTracer tracer(scene);
+  CDRandom random(5);
+  for (int i = 0; i < 5000; ++i) {
+    const CDHit hit = tracer.intersect({-2 + 0.5 * random.uniform(), -2 + 0.2 * random.uniform(), 3}, {0, 0, -1});
+    ASSERT_TRUE(hit);
+    const CDVector along = normalized(cross(hit.normal, randomDirection(random)));
+    const CDVector flat = normalized(along + hit.normal * (1e-3 * random.uniform()));
+    const CDHit next = tracer.intersect(tracer.leave(hit.point, hit.normal), flat);
+    if (next) {
+      EXPECT_GT(dot(next.point - hit.point, hit.normal), 0.0);  // not behind the face
+      EXPECT_NE(next.facet, hit.facet);
+    }
+  }
+}
+
 TEST(CDRayTracerIdentity, AStartOffTheSurfaceDoesNotMeetIt) {
   const CDSceneGeometry scene = pyramids({}, true);
   const CDRayTracer tracer(scene);
