@@ -140,17 +140,34 @@ double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size
   return sum;
 }
 
+/// A model without a fast way for many directions: what the renderer would be without gather().
+class OneByOne : public CDBRDFModel {
+ public:
+  explicit OneByOne(std::shared_ptr<const CDBRDFModel> model) : CDBRDFModel(model->grid()), model_(std::move(model)) {}
+  std::string_view name() const override { return model_->name(); }
+  void evaluate(const CDBRDFGeometry& g, CDSpectralVector<CDMuellerMatrix>& out) const override { model_->evaluate(g, out); }
+  void scatter(const CDBRDFGeometry& g, double weight, const CDSpectralVector<CDStokesVector>& in,
+               CDSpectralVector<CDStokesVector>& sum) const override {
+    model_->scatter(g, weight, in, sum);
+  }
+
+ private:
+  std::shared_ptr<const CDBRDFModel> model_;
+};
+
 struct Case {
   std::string name;
   Shape shape;
   std::size_t bands;
   std::vector<int> rays;
   std::size_t step;  // one row in so many is rendered
-  bool polarized = true;
+  bool polarized = true, one_by_one = false;
 };
 
 void measure(const Case& c) {
   const auto pair = makePair(c.shape, c.bands, c.polarized);
+  if (c.one_by_one)
+    for (CDMaterial& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
   const CDRadiometry radiometry(pair->world, pair->tracer, {.sampling = CDSampling::gridRotated, .rays = c.rays});
   std::vector<double> out(pixels * 4 * c.bands);
   std::vector<float> bare_out(pixels * (pixels / c.step) * 4 * c.bands);
@@ -184,6 +201,7 @@ int main(int argc, char** argv) {
   };
   run({"(a) chunky bar, 91 rays, 1 band", bar, 1, {91}, 4});
   run({"(a) the same, unpolarised", bar, 1, {91}, 4, false});
+  run({"(a) the same, polarised, without gather()", bar, 1, {91}, 8, true, true});
   run({"(a) 91 rays, the sun at the second hit", bar, 1, {91, 1}, 8});
   run({"(b) double bounce, 120 x 120 rays", bar, 1, {120, 120}, 64});
   run({"(c) 91 rays, 100 bands", bar, 100, {91}, 16});
