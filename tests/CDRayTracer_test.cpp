@@ -133,10 +133,10 @@ TEST(CDRayTracerIdentity, AStartIsNearItsSurface) {
   const CDRayTracer tracer(scene);
   const CDHit hit = tracer.intersect(at + CDVector{1.9, 2.1, 5}, {0, 0, -1});
   ASSERT_TRUE(hit);
-  const double off = dot(tracer.leave(hit.point, hit.normal) - hit.point, hit.normal);
+  const double off = dot(tracer.leave(hit) - hit.point, hit.normal);
   EXPECT_GT(off, 1e-6);
   EXPECT_LT(off, 1e-4);
-  EXPECT_FALSE(tracer.occluded(tracer.leave(hit.point, hit.normal), hit.normal));
+  EXPECT_FALSE(tracer.occluded(tracer.leave(hit), hit.normal));
 }
 
 // Rays from where all four faces of a pyramid are seen to its tip and its ridges meet the pyramid and not the ground behind.
@@ -164,11 +164,42 @@ TEST(CDRayTracerIdentity, GrazingRaysLeaveTheirFace) {
     ASSERT_TRUE(hit);
     const CDVector along = normalized(cross(hit.normal, randomDirection(random)));
     const CDVector flat = normalized(along + hit.normal * (1e-3 * random.uniform()));
-    const CDHit next = tracer.intersect(tracer.leave(hit.point, hit.normal), flat);
+    const CDHit next = tracer.intersect(tracer.leave(hit), flat);
     if (next) {
       EXPECT_GT(dot(next.point - hit.point, hit.normal), 0.0);  // not behind the face
       EXPECT_NE(next.facet, hit.facet);
     }
+  }
+}
+
+// A closed room with acute edges, here and far from the origin: rays that start in its edges and corners stay in it. The negative
+// control moves along the normal alone, as was done once: such rays get out.
+TEST(CDRayTracerInvariant, NothingLeaksOutOfARoom) {
+  for (const CDVector& at : {CDVector{}, CDVector{500000, 4000000, 120}}) {
+    CDMesh mesh;
+    mesh.facets = {"wall"}, mesh.materials = {"stone"};
+    mesh.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0.2, 0.1, 1}};
+    mesh.triangles = {{0, 2, 1, 0, 0}, {0, 1, 3, 0, 0}, {1, 2, 3, 0, 0}, {2, 0, 3, 0, 0}};
+    CDGeometryBuilder builder;
+    builder.addMesh(mesh, CDTransform::translate(at));
+    const CDSceneGeometry scene = std::move(builder).build();
+    const CDRayTracer tracer(scene);
+    const auto& v = scene.vertices();
+    const CDVector middle = (v[0] + v[1] + v[2] + v[3]) * 0.25;
+    CDRandom random(6);
+    int out = 0, out_along_normal = 0;
+    for (int i = 0; i < 6000; ++i) {
+      const std::size_t a = i % 4, b = (a + 1 + i / 4 % 3) % 4;
+      const CDVector target = v[a] + (v[b] - v[a]) * (i % 5 == 0 ? 0 : random.uniform());
+      const CDHit hit = tracer.intersect(middle, normalized(target - middle));
+      ASSERT_TRUE(hit);
+      CDVector d = randomDirection(random);
+      if (dot(d, hit.normal) < 0) d = -d;
+      out += !tracer.occluded(tracer.leave(hit), d);
+      out_along_normal += !tracer.occluded(hit.point + hit.normal * 0x1p-14, d);
+    }
+    EXPECT_EQ(out, 0);
+    EXPECT_GT(out_along_normal, 10);
   }
 }
 
@@ -178,7 +209,7 @@ TEST(CDRayTracerIdentity, AStartOffTheSurfaceDoesNotMeetIt) {
   CDRandom random(3);
   for (int i = 0; i < 5000; ++i) {
     const CDHit hit = tracer.intersect({8 * random.uniform() - 4, 8 * random.uniform() - 4, 3}, {0, 0, -1});
-    const CDVector start = tracer.leave(hit.point, hit.normal);
+    const CDVector start = tracer.leave(hit);
     EXPECT_FALSE(tracer.occluded(start, hit.normal));
   }
 }
