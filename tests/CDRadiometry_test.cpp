@@ -264,6 +264,31 @@ TEST(CDRadiometryPublished, WhiteFurnaceOfARoughMirror) {
   }
 }
 
+// Five ways to one integral. 2 %: two thousand directions over a lobe of sigma 0.3, the adaptive grid's cells being the largest.
+TEST(CDRadiometryInvariant, AllSamplingsMeanTheSame) {
+  const CDWorld world = worldOf({{{}, copper(0.3)}}, 1);
+  const CDRadiometry::Ray ray = looking({}, {0.5, 0.3, 1}, {0, 1, 0});
+  const CDStokesVector first = seen(world, {.sampling = CDSampling::grid, .rays = {20001}}, ray);
+  for (const CDSampling sampling :
+       {CDSampling::random, CDSampling::gridRotated, CDSampling::adaptive, CDSampling::importance}) {
+    const CDStokesVector got = seen(world, {.sampling = sampling, .rays = {2001}}, ray);
+    EXPECT_LT(apart(got, first), 0.02 * first.getScalar() * (sampling == CDSampling::random ? 5 : 1)) << int(sampling);
+    EXPECT_GT(apart(got * 1.2, first), 0.06 * first.getScalar());  // negative control
+  }
+}
+
+// Section 7.5.1: with the seed set anew for every pixel all pixels draw the same numbers.
+TEST(CDRadiometryIdentity, ReseedingMakesAllPixelsAlike) {
+  CDWorld world = worldOf({{{}, copper()}}, 1);
+  CDRadiometry::Ray one = looking({}, {0.5, 0.3, 1}, {0, 1, 0}), other = one;
+  other.pixel = 7;
+  const CDRadiometryOptions fault{.sampling = CDSampling::random, .rays = {20}, .reseed_every_pixel = true};
+  EXPECT_EQ(apart(seen(world, fault, one), seen(world, fault, other)), 0.0);
+  const CDRadiometryOptions sound{.sampling = CDSampling::random, .rays = {20}};
+  EXPECT_GT(apart(seen(world, sound, one), seen(world, sound, other)), 1e-3);
+  EXPECT_EQ(apart(seen(world, sound, one), seen(world, sound, one)), 0.0);
+}
+
 TEST(CDRadiometryIdentity, ShadowAndTruth) {
   CDWorld world = worldOf({{{}, copper()}, {CDTransform::translate({0, 0, 2}), copper()}}, 0.1);
   setSun(world, {0, 0, 1}, 1);
@@ -306,6 +331,8 @@ TEST(CDRadiometryIdentity, RefusesWhatDoesNotFit) {
   CDWorld world = worldOf({{{}, copper()}});
   const auto tracer = std::make_shared<CDRayTracer>(world.geometry);
   EXPECT_THROW(CDRadiometry(world, tracer, {.rays = {-1}}), CDMathError);
+  EXPECT_THROW(CDRadiometry(world, tracer, {.rays = {4097, 2}}), CDMathError);
+  EXPECT_NO_THROW(CDRadiometry(world, tracer, {.rays = {4097, 1}}));
   EXPECT_THROW(CDRadiometry(world, nullptr, {}), CDMathError);
   world.materials[0].brdf = nullptr;
   EXPECT_THROW(CDRadiometry(world, tracer, {}), CDMathError);
