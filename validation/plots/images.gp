@@ -21,16 +21,15 @@ do for [i = 2:panels] {
 }
 down = ceil(panels / real(across))
 panel = 190
-gap = one_bar ? 8 : 62
-bar = one_bar ? 110 : 10
+gap = one_bar ? 8 : 70
+bar = one_bar ? 135 : 10
 width = across * (panel + gap) + bar
 height = down * (panel + 26) + 8
 load style
 
-unset border
+set border 15 linecolor rgb '#b8b8b8' linewidth 0.5
 unset grid
 unset key
-set xtics format ''
 unset xtics
 unset ytics
 set size ratio -1
@@ -43,7 +42,7 @@ do for [i = 1:panels] {
   set rmargin at screen (right * (panel + gap) + 4.0 + panel) / width
   set tmargin at screen 1 - (row * (panel + 26) + 24.0) / height
   set bmargin at screen 1 - (row * (panel + 26) + 24.0 + panel) / height
-  set title Title[i] font ',12' offset 0,-0.8
+  set title Title[i] font ',10' offset 0,-0.8
   set cbrange [Low[i]:High[i]]
   if (Map[i] eq 'signed') { @signed_map }
   if (Map[i] eq 'level') { @level_map }
@@ -54,14 +53,14 @@ do for [i = 1:panels] {
     if (i == panels) {
       set colorbox user origin screen (across * (panel + gap) + 8.0) / width, (12.0 / height) \
         size screen 12.0 / width, (height - 44.0) / height
-      set cblabel unit offset 0.5,0
+      set cblabel unit font ',10' offset 1,0
     }
   } else {
     set colorbox user origin screen (right * (panel + gap) + panel + 8.0) / width, \
       1 - (row * (panel + 26) + 24.0 + panel) / height size screen 8.0 / width, real(panel) / height
     set cblabel ''
   }
-  set cbtics font ',11' scale 0.5
+  set cbtics font ',10' scale 0.5
   plot pictures . '.csv' using 'x':'y':Column[i] with image
 }
 unset multiplot

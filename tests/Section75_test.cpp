@@ -1,0 +1,80 @@
+// The pictures of sections 7.1 and 7.5 to 7.8: scene, cheap items and their controls (nw/thesis/Section75.nw, FlatPlate.nw, Section76.nw).
+#include "thesis/Section75.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "Items.hpp"
+#include "light/CDError.hpp"
+#include "thesis/FlatPlate.hpp"
+#include "thesis/Pictures.hpp"
+
+using namespace malus;
+
+namespace {
+CDThesisScene small(CDChunks chunks, std::vector<int> rays) {
+  CDThesisScene scene = chunkyBar(chunks);
+  scene.pixels = 32;
+  scene.radiometry.rays = std::move(rays);
+  return scene;
+}
+}  // namespace
+
+TEST(Section75Published, RoughnessesAreThoseOfTable75) {
+  const CDItem item = ran("T7.5", reproduceT75);
+  EXPECT_EQ(named(item, CDVerdict::reproduced).size(), 8u);
+  EXPECT_EQ(item.claims().size(), 8u);
+}
+
+TEST(Section75Published, NegativeControlAnotherRoughnessIsSeen) {
+  const Corrupted table("T7.5.csv", "5,0.3", "5,0.25");
+  EXPECT_EQ(named(ran("T7.5", reproduceT75, table.data), CDVerdict::differs),
+            (std::set<std::string>{"sigma.5", "file.5"}));
+}
+
+TEST(FlatPlatePublished, TheTracedColumnIsMet) {
+  const CDItem item = ran("F7.1", reproduceF71);
+  EXPECT_TRUE(named(item, CDVerdict::differs).empty());
+  EXPECT_EQ(named(item, CDVerdict::erratum), (std::set<std::string>{"traced3.L3", "sides"}));
+}
+
+TEST(FlatPlatePublished, NegativeControlAChangedDigitIsSeen) {
+  const Corrupted table("T7.1.csv", "34.07", "34.08");
+  EXPECT_EQ(named(ran("F7.1", reproduceF71, table.data), CDVerdict::differs),
+            (std::set<std::string>{"traced2.L1"}));
+}
+
+TEST(Section75Invariant, APictureIsTheSameWheneverItIsMade) {
+  const CDThesisScene scene = small(CDChunks::copper, {21, 1});
+  const CDStokesImage one = renderImage(scene), two = renderImage(scene);
+  EXPECT_EQ(one.stokes, two.stokes);
+  EXPECT_EQ(one.facet, two.facet);
+  EXPECT_EQ(one.rays, two.rays);
+  CDThesisScene other = scene;  // negative control
+  other.radiometry.seed = 2;
+  EXPECT_NE(renderImage(other).stokes, one.stokes);
+}
+
+TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
+  // rho/pi (E cos 30 + 0.05 pi); the grid of 1000 rays sums the cosine to some 1e-3
+  const CDStokesImage image = renderImage(small(CDChunks::lambertian, {1001}));
+  for (const auto& [top, reflectance] : {std::pair{"5.top", 0.6}, {"2.top", 0.2}}) {
+    const double expected = reflectance / std::numbers::pi *
+                            (std::cos(std::numbers::pi / 6) + 0.05 * std::numbers::pi);
+    EXPECT_NEAR(meanOver(image.stokes[0], insideOf(image, top)), expected, 1e-3 * expected)
+        << top;
+    EXPECT_GT(std::abs(meanOver(image.stokes[0], insideOf(image, top)) - 1.01 * expected),
+              1e-3 * expected);  // negative control
+  }
+}
+
+TEST(Section75Identity, OneReflectionMakesNoCircularLight) {
+  const CDStokesImage image = renderImage(small(CDChunks::copper, {21}));
+  for (const double S3 : image.stokes[3]) ASSERT_EQ(S3, 0);
+  const CDStokesImage twice = renderImage(small(CDChunks::copper, {21, 1}));
+  EXPECT_NE(twice.stokes[3], image.stokes[3]);  // negative control
+}
