@@ -1,0 +1,138 @@
+// Where the values of a scene file stand, and what is said of a broken one (nw/program/SceneText.nw).
+#include "program/SceneText.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+using namespace malus;
+
+namespace {
+/// Writes a random JSON text with blanks and comments between all tokens, and notes each value's line and column.
+struct Writer {
+  std::string text;
+  int line = 1, column = 1;
+  std::map<std::string, std::pair<int, int>> places;
+
+  void write(const std::string& part) {
+    for (const char letter : part) {
+      text += letter;
+      if (letter == '\n')
+        ++line, column = 1;
+      else if ((static_cast<unsigned char>(letter) & 0xC0) != 0x80)
+        ++column;
+    }
+  }
+  void gap() {
+    static const std::vector<std::string> gaps{"", "", " ", "\n", "\t \r\n", "// note: {\"a\", 1}\n",
+                                               "/* 1, [2]\n \"x */", "/**/", " // \"\n  "};
+    write(*rc::gen::elementOf(gaps));
+  }
+  void value(const std::string& path, int depth) {
+    gap();
+    places[path] = {line, column};
+    const int kind = *rc::gen::inRange(0, depth > 3 ? 4 : 6);
+    static const std::vector<std::string> leaves{"true", "null", "-12.5e+3", "7", "0.25", "false"};
+    static const std::vector<std::string> texts{"\"\"", "\"a\\\"b\"", "\"\\\\\"", "\"{//\"", "\"\u00e9t\u00e9\""};
+    if (kind < 2) write(*rc::gen::elementOf(leaves));
+    else if (kind < 4) write(*rc::gen::elementOf(texts));
+    else if (kind == 4) list(path, depth);
+    else object(path, depth);
+    gap();
+  }
+  void list(const std::string& path, int depth) {
+    write("[");
+    gap();
+    const int size = *rc::gen::inRange(0, 4);
+    for (int i = 0; i < size; ++i) {
+      if (i > 0) write(",");
+      value(path + '[' + std::to_string(i) + ']', depth + 1);
+    }
+    write("]");
+  }
+  void object(const std::string& path, int depth) {
+    write("{");
+    gap();
+    const int size = *rc::gen::inRange(0, 4);
+    for (int i = 0; i < size; ++i) {
+      if (i > 0) write(",");
+      gap();
+      const std::string key = "key-" + std::to_string(i);
+      write('"' + key + '"');
+      gap();
+      write(":");
+      value(path.empty() ? key : path + '.' + key, depth + 1);
+    }
+    write("}");
+  }
+};
+
+std::string complaint(const std::string& text) {
+  try {
+    const CDSceneText read(text, "s.json", ".");
+  } catch (const CDInputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+bool begins(const std::string& text, const std::string& beginning) { return text.starts_with(beginning); }
+}  // namespace
+
+RC_GTEST_PROP(SceneTextIdentity, EveryValueStandsWhereItsWriterPutIt, ()) {
+  Writer writer;
+  writer.value("", 0);
+  const CDSceneText text(writer.text, "s.json", ".");
+  for (const auto& [path, place] : writer.places) {
+    const CDInputPlace found = text.place(path);
+    RC_ASSERT(std::pair(found.line, found.column) == place);
+  }
+}
+
+TEST(SceneTextIdentity, NegativeControlAShiftedTextHasOtherPlaces) {
+  const CDSceneText text("{\"a\": 1}", "s.json", "."), shifted(" {\"a\": 1}", "s.json", ".");
+  EXPECT_EQ(text.place("a").column, 7);
+  EXPECT_NE(shifted.place("a").column, text.place("a").column);
+}
+
+TEST(SceneTextIdentity, ANodeComplainsWithItsPlacePathAndValue) {
+  const CDSceneText text("{\n  \"sun\": {\"zenith deg\": [1, -2]}\n}", "s.json", ".");
+  const CDSceneNode node = text.root()["sun"]["zenith deg"][1];
+  EXPECT_EQ(std::string(node.error("is negative", "give another").what()),
+            "s.json:2:29: sun[\"zenith deg\"][1] = -2: is negative; give another");
+}
+
+TEST(SceneTextIdentity, BrokenTextsAreAnsweredWithLineAndColumn) {
+  EXPECT_TRUE(begins(complaint("{\n \"a\": tru\n}"), "s.json:2:")) << complaint("{\n \"a\": tru\n}");
+  EXPECT_TRUE(begins(complaint("{\"a\": 1,}"), "s.json:1:9: is not valid JSON: unexpected '}'"));
+  EXPECT_TRUE(begins(complaint(""), "s.json:1:1: is not valid JSON: unexpected end of input"));
+  EXPECT_TRUE(begins(complaint("{\"a\": 1e999}"), "s.json:1:11: is not valid JSON: number overflow"))
+      << complaint("{\"a\": 1e999}");
+  EXPECT_TRUE(begins(complaint("{\"a\": NaN}"), "s.json:1:"));
+  EXPECT_TRUE(begins(complaint("{\"a\": 1} x"), "s.json:1:"));
+  EXPECT_TRUE(begins(complaint("{\"a\": 1 /* no end"), "s.json:1:"));
+  EXPECT_TRUE(begins(complaint("{\"a\": \"\xff\"}"), "s.json:1:"));
+  EXPECT_EQ(complaint("{} // fine"), "accepted");
+}
+
+TEST(SceneTextIdentity, AKeyThatComesTwiceIsRefusedWhereItComesAgain) {
+  EXPECT_TRUE(begins(complaint("{\"a\": 1,\n  \"a\": 2}"), "s.json:2:3: has the key \"a\" twice"));
+  EXPECT_EQ(complaint("{\"a\": {\"a\": 2}}"), "accepted");
+}
+
+TEST(SceneTextIdentity, NestingBeyondUseIsRefused) {
+  EXPECT_TRUE(begins(complaint(std::string(100000, '[')), "s.json:1:33: is nested too deeply"));
+  EXPECT_EQ(complaint(std::string(30, '[') + std::string(30, ']')), "accepted");
+}
+
+TEST(SceneTextIdentity, APatchChangesValuesAndKeepsPlaces) {
+  CDSceneText text("{\"radiometry\": {\"rays\": [91, 1], \"seed\": 3}}", "s.json", ".");
+  text.patch("{\"radiometry\": {\"rays\": [46], \"seed\": null, \"sampling\": \"grid\"}}");
+  const CDSceneNode node = text.root()["radiometry"];
+  EXPECT_EQ(node["rays"].numbers(), std::vector<double>{46});
+  EXPECT_FALSE(node.has("seed"));
+  EXPECT_EQ(node["rays"].place().column, 25);
+  EXPECT_EQ(node["sampling"].place().column, 16);  // nearest value around it
+}
