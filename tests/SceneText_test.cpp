@@ -5,6 +5,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <map>
+#include <random>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,7 +14,15 @@ using namespace malus;
 
 namespace {
 /// Writes a random JSON text with blanks and comments between all tokens, and notes each value's line and column.
+/// RapidCheck gives the seed alone: its own ranges are so small at first that hardly any tree would have a branch.
 struct Writer {
+  explicit Writer(std::uint32_t seed) : random(seed) {}
+  std::mt19937 random;
+  int pick(int low, int high) { return low + static_cast<int>(random() % static_cast<unsigned>(high - low)); }
+  const std::string& oneOf(const std::vector<std::string>& words) {
+    return words[static_cast<std::size_t>(pick(0, static_cast<int>(words.size())))];
+  }
+
   std::string text;
   int line = 1, column = 1;
   std::map<std::string, std::pair<int, int>> places;
@@ -29,16 +39,16 @@ struct Writer {
   void gap() {
     static const std::vector<std::string> gaps{"", "", " ", "\n", "\t \r\n", "// note: {\"a\", 1}\n",
                                                "/* 1, [2]\n \"x */", "/**/", " // \"\n  "};
-    write(*rc::gen::elementOf(gaps));
+    write(oneOf(gaps));
   }
   void value(const std::string& path, int depth) {
     gap();
     places[path] = {line, column};
-    const int kind = *rc::gen::inRange(0, depth > 3 ? 4 : 6);
+    const int kind = depth == 0 ? 5 : pick(0, depth > 3 ? 4 : 6);
     static const std::vector<std::string> leaves{"true", "null", "-12.5e+3", "7", "0.25", "false"};
     static const std::vector<std::string> texts{"\"\"", "\"a\\\"b\"", "\"\\\\\"", "\"{//\"", "\"\u00e9t\u00e9\""};
-    if (kind < 2) write(*rc::gen::elementOf(leaves));
-    else if (kind < 4) write(*rc::gen::elementOf(texts));
+    if (kind < 2) write(oneOf(leaves));
+    else if (kind < 4) write(oneOf(texts));
     else if (kind == 4) list(path, depth);
     else object(path, depth);
     gap();
@@ -46,7 +56,7 @@ struct Writer {
   void list(const std::string& path, int depth) {
     write("[");
     gap();
-    const int size = *rc::gen::inRange(0, 4);
+    const int size = pick(0, 4);
     for (int i = 0; i < size; ++i) {
       if (i > 0) write(",");
       value(path + '[' + std::to_string(i) + ']', depth + 1);
@@ -56,7 +66,7 @@ struct Writer {
   void object(const std::string& path, int depth) {
     write("{");
     gap();
-    const int size = *rc::gen::inRange(0, 4);
+    const int size = pick(0, 4);
     for (int i = 0; i < size; ++i) {
       if (i > 0) write(",");
       gap();
@@ -82,13 +92,23 @@ bool begins(const std::string& text, const std::string& beginning) { return text
 }  // namespace
 
 RC_GTEST_PROP(SceneTextIdentity, EveryValueStandsWhereItsWriterPutIt, ()) {
-  Writer writer;
+  Writer writer(*rc::gen::arbitrary<std::uint32_t>());
   writer.value("", 0);
   const CDSceneText text(writer.text, "s.json", ".");
   for (const auto& [path, place] : writer.places) {
     const CDInputPlace found = text.place(path);
     RC_ASSERT(std::pair(found.line, found.column) == place);
   }
+}
+
+TEST(SceneTextIdentity, TheRandomTreesHaveBranches) {
+  std::size_t places = 0;
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Writer writer(seed);
+    writer.value("", 0);
+    places += writer.places.size();
+  }
+  EXPECT_GT(places, 300u);  // else the test above looks at nothing
 }
 
 TEST(SceneTextIdentity, NegativeControlAShiftedTextHasOtherPlaces) {
