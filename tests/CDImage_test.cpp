@@ -169,8 +169,8 @@ TEST(QuicklooksIdentity, DrawsEveryQuantityWithItsScale) {
   ASSERT_EQ(made.size(), 8u);
   const auto in = OIIO::ImageInput::open((scratch / "q.S1.png").string());
   ASSERT_TRUE(in);
-  EXPECT_EQ(in->spec().width, int(width) + 64);
-  std::vector<unsigned char> rgb((width + 64) * height * 3);
+  EXPECT_EQ(in->spec().width, int(width) + 84);
+  std::vector<unsigned char> rgb((width + 84) * height * 3);
   ASSERT_TRUE(in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data()));
   EXPECT_EQ(rgb[1], 255);  // the green of what is no number
   EXPECT_EQ(rgb[0], 0);
