@@ -141,7 +141,8 @@ class WovenBook(Workshop):
         self.assertRegex(self.second, r'return <a class="identifier" href="light-first.html#chunk-reflect-a-ray"'.replace("return ", ""))
         self.assertIn("// reflect_it is not linked here", self.second)
         self.assertRegex(self.first, r'Defines <code>reflect_it</code>, used in <a href="matter-second.html#chunk-matter-use-cpp"')
-        self.assertRegex(self.get("identifiers.html"), r"<code>reflect_it</code></td><td><a [^>]*>1</a></td><td><a [^>]*>3</a>")
+        self.assertRegex(self.get("identifiers.html"), r"<code>reflect_it</code></td><td>Reflect a ray</td>"
+                         r"<td><a [^>]*>1</a></td><td><a [^>]*>3</a>")
         self.assertIn("⟨Square <code>n</code>⟩", self.get("chunks.html"))
 
     def test_quotes_and_escapes_print_the_characters_that_were_meant(self):
@@ -318,6 +319,14 @@ class Parts(unittest.TestCase):
         self.assertEqual(html.unescape(re.sub(r"<[^>]*>", "", painted)), code)
         self.assertIn('<span class="comment">/* two\nlines */</span>', painted)
         self.assertIn('<span class="string">"\\"//"</span>', painted)
+
+    def test_an_identifier_is_described_by_the_comment_at_its_declaration(self):
+        lines = ["/// Rays of a pixel. All are cast.", "template <class T>", "int rays(T pixel);", "int bands;  ///< how many",
+                 "int none;  // no", "// rays of nothing"]
+        self.assertEqual(listing.comment_on("rays", lines), "Rays of a pixel")
+        self.assertEqual(listing.comment_on("bands", lines), "how many")
+        self.assertEqual(listing.comment_on("none", lines), "")
+        self.assertEqual(listing.comment_on("ray", lines), "")
 
     def test_bibliography_entry_without_a_needed_field_stops_with_its_line(self):
         with tempfile.NamedTemporaryFile("w", suffix=".bib") as file:

@@ -92,14 +92,43 @@ class Listing:
         return sorted(firsts, key=lambda chunk: noweb.plain(chunk.name).lower())
 
     def identifiers(self):
-        """(identifier, labels of the chunks that define it, labels of the others that use it), by name."""
+        """(identifier, what it is, labels of the chunks that define it, labels of the others that use it), by name."""
         defined, used = {}, {}
         for chunk in self.chunks:
             for word, users in chunk.defines:
                 defined.setdefault(word, set()).add(chunk.label)
                 used.setdefault(word, set()).update(users)
-        return [(word, defined[word], used[word] - defined[word])
+        return [(word, self.about(word, defined[word]), defined[word], used[word] - defined[word])
                 for word in sorted(defined, key=lambda word: (word.lower(), word))]
+
+
+    def about(self, word, labels):
+        """What an identifier is: the first sentence of the comment at its declaration, or the name of its chunk."""
+        chunks = [self.by_label[label] for label in self.ordered(labels)]
+        for chunk in chunks:
+            if comment := comment_on(word, chunk.text.split("\n")):
+                return comment
+        return noweb.plain(chunks[0].name)
+
+
+def comment_on(word, lines):
+    """The first sentence of the /// comment above or beside the declaration of a word; nothing if there is none."""
+    whole = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)")
+    for place, line in enumerate(lines):
+        if not whole.search(line.split("//")[0]):
+            continue
+        beside = re.search(r"///<?\s*(.*)", line)
+        above = place
+        while above and re.match(r"\s*(template|requires|\[\[)", lines[above - 1]):
+            above -= 1
+        comment = [beside[1]] if beside else []
+        while not beside and above and (note := re.match(r"\s*///\s?(.*)", lines[above - 1])):
+            comment.insert(0, note[1].strip())
+            above -= 1
+        if comment and comment[0]:
+            comment = [" ".join(comment).split(" @param")[0]]
+            return re.split(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])", " ".join(comment))[0].rstrip(".;: ")
+    return ""
 
 
 class HtmlListing(Listing):
@@ -147,9 +176,9 @@ class HtmlListing(Listing):
 
     def identifier_index(self):
         rows = [f'<tr id="{anchor_of(word)}"><td><code>{escape(word)}</code></td>'
-                f"<td>{self.numbers(defined)}</td><td>{self.numbers(used)}</td></tr>"
-                for word, defined, used in self.identifiers()]
-        return table(("Identifier", "defined in", "used in"), rows)
+                f"<td>{escape(about)}</td><td>{self.numbers(defined)}</td><td>{self.numbers(used)}</td></tr>"
+                for word, about, defined, used in self.identifiers()]
+        return table(("Identifier", "what it is", "defined in", "used in"), rows)
 
 
 TEX = {"number": "digits"}  # \litnumber is the number of a chunk
@@ -167,10 +196,12 @@ class TexListing(Listing):
     def word(self, word):
         return rf"\litcode{{{noweb.quote_latex(word)}}}"
 
+    def prose(self, words):
+        return noweb.quote_latex(words).replace("-{}", "-").replace("\\textquotesingle{}", "'")
+
     def name(self, name):
         parts = re.split(r"\[\[(.*?)\]\]", name)
-        return "".join(self.word(part) if i % 2 else noweb.quote_latex(part).replace("-{}", "-").replace("\\textquotesingle{}", "'")
-                       for i, part in enumerate(parts))
+        return "".join(self.word(part) if i % 2 else self.prose(part) for i, part in enumerate(parts))
 
     def use(self, chunk, name, label):
         return rf"\lituse{{{label}}}{{{self.by_label[label].number}}}{{{self.name(name)}}}"
@@ -201,8 +232,9 @@ class TexListing(Listing):
                          rf"{{{self.numbers(chunk.used_in) or 'a file'}}}" for chunk in self.named_chunks())
 
     def identifier_index(self):
-        return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{}}{{{self.pages(defined)}}}"
-                         rf"{{{self.numbers(used)}}}" for word, defined, used in self.identifiers())
+        return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{{self.prose(about)}}}"
+                         rf"{{{self.pages(defined)}}}{{{self.numbers(used)}}}"
+                         for word, about, defined, used in self.identifiers())
 
     def pages(self, labels):
         return ", ".join(rf"{self.number(label)}~\litpage{{{label}}}" for label in self.ordered(labels))
