@@ -18,6 +18,7 @@ REFERENCE = re.compile(r"\\(?:eq)?ref\{([^}]*)\}")
 CITATION = re.compile(r"\\cite(?:\[[^\]]*\])?\{([^}]*)\}")
 VALUE = re.compile(r"\\val\{([^}]*)\}")
 FIGURE = re.compile(r"\\includegraphics(?:\[[^\]]*\])?\{([^}]*)\}")
+DRAWN_LINK = re.compile(r'<a href="([^"]*)"><rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"')
 MALUSVAL = re.compile(r"\\malusval\{([^}]*)\}\{(.*)\}\s*$")
 
 
@@ -75,6 +76,15 @@ class Links:
                     return path
         return None
 
+    def drawing(self, name):
+        """The text of a figure that has links in it, whose addresses are labels; nothing for other figures."""
+        path = self.figures[name]
+        if not path or not path.endswith(".svg") or not path.startswith(self.options.book):
+            return None
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        return text if DRAWN_LINK.search(text) else None
+
     def check(self, pages):
         """Everything the prose refers to exists; all that does not is told at once."""
         problems, defined = [], {}
@@ -107,6 +117,9 @@ class Links:
                 if not self.figures[match[1]]:
                     complain(match, rf"{match[0]}: neither {self.options.report} nor {self.options.book}/figures"
                                     f" has {match[1]}.svg or .png")
+                for link in DRAWN_LINK.finditer(self.drawing(match[1]) or ""):
+                    if link[1] not in defined:
+                        complain(match, rf"{match[0]}: its drawing links to {link[1]}, but no chapter has that label")
         stop_if_any(problems)
 
     def substitute(self, page):
@@ -144,16 +157,18 @@ class Book:
 
     def gather(self):
         """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
-        parts, number = {}, 0
+        parts, number = {}, 0  # the folder "back" holds what stands after the last part
         for chapter in self.chapters:
             folder = os.path.basename(os.path.dirname(chapter.path))
             name = os.path.splitext(os.path.basename(chapter.path))[0]
             latex = chapter.latex()
             numbered = re.search(r"\\chapter\{", latex) is not None
             number += numbered
-            in_front = folder not in self.about
+            in_front, in_back = folder not in self.about, folder == "back"
             page = Page(name if in_front else f"{folder}-{name}", chapter.path, latex, number if numbered else 0)
-            if in_front:
+            if in_back:
+                self.back.append(page)
+            elif in_front:
                 self.front.append(page)
             else:
                 if folder not in parts:

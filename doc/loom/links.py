@@ -43,6 +43,8 @@ class Page(html.parser.HTMLParser):
             self.problems.append((line, "a script"))
         if tag == "img" and not attrs.get("alt"):
             self.problems.append((line, f"the picture {attrs.get('src')} has no words"))
+        if tag == "svg" and not attrs.get("aria-label"):
+            self.problems.append((line, "a drawing has no words"))
         if address := attrs.get(LOADS.get(tag, "")):
             self.needs.append((line, "load", address))
         elif tag == "a" and attrs.get("href") is not None:

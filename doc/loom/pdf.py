@@ -75,7 +75,7 @@ class PdfBook(book.Book):
             self.links.substitute(page)
         figures = self.figures()
         for page in self.pages():
-            latex = re.sub(r"\\litfigure\{([^}]*)\}", lambda match: rf"\litfigure{{{figures[match[1]][0]}}}", page.latex)
+            latex = re.sub(r"\\litfigure\{([^}]*)\}", lambda match: self.figure(match[1], figures[match[1]][0]), page.latex)
             latex = latex.replace(r"\chapter*{", r"\addchap{", 1)
             self.put(page.name + ".tex", rf"\typeout{{{MARK}{page.source}}}" + latex)
         self.put("chunks.tex", "".join(self.listings.chunk(chunk) for chapter in self.chapters for chunk in chapter.chunks)
@@ -93,6 +93,16 @@ class PdfBook(book.Book):
             return name, (os.path.relpath(file, self.work), width)
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             return dict(pool.map(convert, self.links.figures.items()))
+
+    def figure(self, name, file):
+        """A picture; over the boxes of a drawing with links lie links."""
+        drawing = self.links.drawing(name)
+        if not drawing:
+            return rf"\litfigure{{{file}}}"
+        width, height = map(float, re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)', drawing).groups())
+        boxes = "".join(rf"\litbox{{{x}}}{{{height - float(y) - float(h):g}}}{{{w}}}{{{h}}}{{{label}}}"
+                        for label, x, y, w, h in book.DRAWN_LINK.findall(drawing))
+        return rf"\litdrawing{{{file}}}{{{width:g}}}{{{height:g}}}{{{boxes}}}"
 
     def frame(self):
         """The whole book: what stands before, between and after the chapters."""
@@ -118,7 +128,7 @@ class PdfBook(book.Book):
         for part in self.parts:
             out.append(rf"\setpartpreamble[u][.7\textwidth]{{\bigskip {part.about}}}" "\n" rf"\part{{{part.title}}}")
             out += [rf"\input{{{page.name}}}" for page in part.pages]
-        out += [r"\backmatter", r"\input{bibliography}",
+        out += [r"\backmatter", *(rf"\input{{{page.name}}}" for page in self.back), r"\input{bibliography}",
                 rf"\typeout{{{MARK}index of chunks}}\addchap{{Chunks}}\begin{{litindex}}",
                 self.listings.chunk_index(), r"\end{litindex}",
                 rf"\typeout{{{MARK}index of identifiers}}\addchap{{Identifiers}}\begin{{litindex}}",

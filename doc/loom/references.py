@@ -10,6 +10,7 @@ from problems import Problem
 BEGIN = re.compile(r"@(\w+)\{([\w:.-]+),\s*")
 FIELD = re.compile(r"(\w+)\s*=\s*\{")
 NEEDED = {"article": ("author", "title", "journal", "year"), "book": ("title", "publisher", "year"),
+          "incollection": ("author", "title", "booktitle", "year"),
           "inproceedings": ("author", "title", "booktitle", "year"), "misc": ("title",),
           "phdthesis": ("author", "title", "school", "year"), "techreport": ("author", "title", "institution", "year")}
 
@@ -79,7 +80,7 @@ def source(entry):
         number = f"({get('number')})" if get("number") else ""
         pages = f":{get('pages')}" if get("pages") else ""
         return [rf"\emph{{{get('journal')}}} {get('volume', '')}{number}{pages}", get("year")]
-    if entry.kind == "inproceedings":
+    if entry.kind in ("inproceedings", "incollection"):
         volume = f", volume {get('volume')}" if get("volume") else ""
         pages = f", pages {get('pages')}" if get("pages") else ""
         return [rf"In \emph{{{get('booktitle')}}}{volume}{pages}", get("publisher"), get("year")]
@@ -98,7 +99,7 @@ def latex(entry):
     who = people(entry.get("author") or entry.get("editor", ""))
     if who and not entry.get("author"):
         who += ", editors" if " and " in who else ", editor"
-    title = entry["title"] if entry.kind in ("article", "inproceedings") else rf"\emph{{{entry['title']}}}"
+    title = entry["title"] if entry.kind in ("article", "inproceedings", "incollection") else rf"\emph{{{entry['title']}}}"
     where = ", ".join(part for part in source(entry) if part)
     text = ". ".join(part for part in (who, title, where, entry.get("note")) if part) + "."
     if doi := entry.get("doi"):

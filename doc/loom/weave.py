@@ -60,7 +60,7 @@ class Finisher:
         html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)
         html = self.PRIME_AND_INDEX.sub(r'<msub><mrow>\1<mo lspace="0" rspace="0">\3</mo></mrow>\2</msub>', html)
         html = self.HEADING.sub(lambda match: self.heading(page, match), html)
-        html = self.FIGURE.sub(lambda match: self.figure(match, html), html)
+        html = self.FIGURE.sub(lambda match: self.figure(page, match, html), html)
         page.body = self.resolve(page, html)
         page.title = page.title or page.name
 
@@ -78,8 +78,8 @@ class Finisher:
             source = f'\n<p class="source">Edit this chapter: <code>{escape(page.source)}</code></p>'
         return f"{before}<h{level}{classes}>{title.strip()} {mark}</h{level}>{source}"
 
-    def figure(self, match, html):
-        """A picture; its words for those who cannot see it are its caption."""
+    def figure(self, page, match, html):
+        """A picture; its words for those who cannot see it are its caption. A drawing with links is put into the page."""
         name = unescape(match[1])
         path = self.links.figures[name]
         caption = re.search(r"<figcaption[^>]*>(.*?)</figcaption>", html[match.end():], re.DOTALL)
@@ -87,8 +87,15 @@ class Finisher:
         if caption and "<figure" not in html[match.end():match.end() + caption.start()]:
             formulas = re.sub(r'<math[^>]*alttext="([^"]*)".*?</math>', r"\1", caption[1], flags=re.DOTALL)
             words = " ".join(unescape(re.sub(r"<[^>]*>", "", formulas)).split())
+        if drawing := self.links.drawing(name):
+            drawing = book.DRAWN_LINK.sub(lambda link: link[0].replace(link[1], self.address_of(page, link[1]), 1), drawing)
+            return drawing.replace("<svg ", f'<svg class="drawn" role="group" aria-label="{escape(words, quote=True)}" ', 1)
         kind = os.path.splitext(path)[1]
         return f'<img src="figures/{escape(name)}{kind}" alt="{escape(words, quote=True)}"{size_of(path)}>'
+
+    def address_of(self, page, label):
+        home, anchor, _ = self.links.labels[label]
+        return ("" if home is page else home.file) + "#" + anchor
 
     def resolve(self, page, html):
         """Addresses of chunks, now that it is known on which page each stands."""
@@ -155,7 +162,7 @@ class HtmlBook(book.Book):
         finisher = Finisher(self.links, self.chapters, self.listings)
         for page, body in zip(pages, bodies):
             finisher.finish(page, body)
-        self.number_entries(self.back[0])
+        self.number_entries(self.back[-1])
         self.add_indexes(finisher)
 
     def number_entries(self, page):
