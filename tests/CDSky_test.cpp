@@ -184,6 +184,29 @@ TEST(CDSkyIdentity, BlackBelowTheHorizonAndAroundTheSeam) {
   EXPECT_LT(distance(ask(*sky, left), ask(*sky, right)), 1e-3);
 }
 
+// 1e-7 of S0: single precision rounds each component by 6e-8 of itself.
+TEST(CDSkyIdentity, ManyDirectionsAreAnsweredAsOneByOne) {
+  const CDSpectralGridPtr grid = CDSpectralGrid::make({500.0, 600.0});
+  const CDUniformSky uniform(Spectrum(grid, CDStokesVector(0.3)));
+  const auto polarized = skyOf(written(CDSkyConvention::malus));
+  const std::vector<float> x{0.6f, 0, 0.48f, -0.8f}, y{0, 0.8f, 0.64f, 0}, z{0.8f, 0.6f, 0.6f, -0.6f};
+  for (const CDSky* sky : {static_cast<const CDSky*>(&uniform), static_cast<const CDSky*>(polarized.get())}) {
+    const std::size_t bands = sky->grid()->size();
+    std::vector<float> many(x.size() * 4 * bands, -1);
+    sky->radiances({x.size(), x.data(), y.data(), z.data()}, many.data());
+    Spectrum one(sky->grid());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      sky->radiance({x[i], y[i], z[i]}, one);
+      for (std::size_t band = 0; band < bands; ++band)
+        for (int c = 0; c < 4; ++c)
+          EXPECT_NEAR(many[(i * 4 + static_cast<std::size_t>(c)) * bands + band],
+                      CDStokesVector(one.at(band)).getStokes(c),
+                      1e-7 * CDStokesVector(one.at(band)).getScalar())
+              << sky->description() << " direction " << i;
+    }
+  }
+}
+
 TEST(CDSkyIdentity, ATableWithoutPolarisationIsAnUnpolarisedSky) {
   std::string text = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n";
   for (const char* zenith : {"0", "90"})
