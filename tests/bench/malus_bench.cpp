@@ -15,6 +15,7 @@
 #include "light/CDSpectralVector.hpp"
 #include "matter/BRDFSampling.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "program/Models.hpp"
 
 using namespace malus;
 
@@ -155,6 +156,33 @@ void bareMueller(benchmark::State& state) {
   });
 }
 
+// ---- models by name, as a user asks for them: one geometry and all its bands in one call of scatter()
+struct NamedModel {
+  const char* name;
+  std::map<std::string, std::string> parameters;  // those without a default
+};
+const std::vector<NamedModel>& namedModels() {
+  static const std::vector<NamedModel> models{
+      {"torrance-sparrow", {{"n", "1.5"}, {"k", "2"}, {"sigma", "0.2"}}},
+      {"lambertian", {{"reflectance", "0.5"}}},
+      {"dirsig", {{"reflectance", "0.1"}, {"height", "1"}, {"width", "20"}}},
+  };
+  return models;
+}
+const std::vector<int> named_model_bands{1, 256};
+
+void scatterByName(benchmark::State& state, const NamedModel& named) {
+  Bands bands(static_cast<std::size_t>(state.range(0)));
+  const CDModelEntry& entry = modelEntry(named.name, {});
+  CDArguments arguments;
+  for (const auto& [name, text] : named.parameters) arguments[name] = {text, {}};
+  const auto brdf = entry.make(checkedSettings(entry, arguments, bands.grid));
+  loop(state, [&](std::size_t i) {
+    const auto g = CDBRDFGeometry::fromDirections(rays().to_source[i], rays().to_viewer[i]);
+    brdf->scatter(g, 0.01, bands.polarized, bands.sum);
+  });
+}
+
 // ---- the list of pairs; the name before the last slash is what is compared
 void add(const std::string& name, const std::vector<int>& bands,
          const std::function<void(benchmark::State&)>& product,
@@ -190,6 +218,14 @@ void registerAll() {
       [](State& s) { productMueller(s, true); }, bareMueller);
 }
 
+void registerModels() {
+  for (const NamedModel& named : namedModels())
+    for (const int n : named_model_bands)
+      benchmark::RegisterBenchmark(fmt::format("{}/{}/model", named.name, n).c_str(),
+                                   [&named](benchmark::State& s) { scatterByName(s, named); })
+          ->Arg(n);
+}
+
 /// Prints as the console reporter does, keeps every repetition, and compares medians at the end.
 class RatioReporter : public benchmark::ConsoleReporter {
  public:
@@ -200,6 +236,7 @@ class RatioReporter : public benchmark::ConsoleReporter {
         times_[run.run_name.function_name].push_back(run.GetAdjustedCPUTime());
   }
   void Finalize() override;
+  void printModels() const;
 
  private:
   double median(const std::string& name) const {
@@ -222,6 +259,7 @@ void RatioReporter::Finalize() {
              "bare", "ratio");
   std::map<std::string, std::array<std::map<int, double>, 2>> curves;
   for (const auto& [name, times] : times_) {
+    if (name.ends_with("/model")) continue;
     const std::size_t slash = name.rfind('/'), before = name.rfind('/', slash - 1);
     const int bands = std::stoi(name.substr(before + 1, slash - before - 1));
     curves[name.substr(0, before)][name.substr(slash + 1) == "bare"][bands] = median(name);
@@ -241,6 +279,19 @@ void RatioReporter::Finalize() {
     };
     if (!pair[0].empty() && !pair[1].empty()) row(name, slope(pair[0]), slope(pair[1]));
   }
+  printModels();
+}
+
+void RatioReporter::printModels() const {
+  fmt::print("\n{:<52} {:>10} {:>10}\n", "every model, polarised light [ns]", "1 band",
+             "each more");
+  const int few = named_model_bands.front(), many = named_model_bands.back();
+  for (const NamedModel& named : namedModels()) {
+    const double one = median(fmt::format("{}/{}/model", named.name, few));
+    const double all = median(fmt::format("{}/{}/model", named.name, many));
+    if (!std::isnan(one))
+      fmt::print("{:<52} {:>10.2f} {:>10.2f}\n", named.name, one, (all - one) / (many - few));
+  }
 }
 }  // namespace
 
@@ -256,6 +307,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, pointers.data());
   if (benchmark::ReportUnrecognizedArguments(count, pointers.data())) return 2;
   registerAll();
+  registerModels();
   RatioReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();

@@ -1,0 +1,28 @@
+// The items that show each model in one style (nw/thesis/OwnModels.nw).
+#include "thesis/OwnModels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "Items.hpp"
+
+using namespace malus;
+
+namespace {
+const std::map<std::string, CDItemFunction> items{{"X.dirsig", reproduceXDIRSIG}};
+}  // namespace
+
+TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
+  for (const auto& [id, function] : items) {
+    const CDItem item = ran(id, function);
+    EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{}) << id;
+    for (const char* question : {"energy", "reciprocity", "realizable"})
+      EXPECT_TRUE(named(item, CDVerdict::reproduced).contains(question)) << id;
+    EXPECT_EQ(item.pictures().size(), 1u);
+    EXPECT_EQ(item.tables().size(), 3u);
+    EXPECT_GT(std::stod(valuesOf(item).at("dhr")),
+              0.01);  // negative control: something is reflected
+  }
+}

@@ -1,0 +1,19 @@
+// The verdicts of the items of thesis chapter 5 (nw/thesis/Section5.nw).
+#include "thesis/Section5.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "Items.hpp"
+
+using namespace malus;
+
+TEST(Section5Invariant, TheThreeFormsOfTheOlderLobe) {
+  const CDItem item = ran("F5.1", reproduceF51);
+  EXPECT_EQ(named(item, CDVerdict::reproduced),
+            (std::set<std::string>{"cone", "cosine", "exponential", "height.width"}));
+  EXPECT_EQ(named(item, CDVerdict::notTestable), (std::set<std::string>{"formulas"}));
+  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
+}
