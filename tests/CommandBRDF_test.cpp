@@ -192,7 +192,8 @@ TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
 TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
   const Scratch scratch;
   const std::string list = malusIn(scratch.path, "brdf --list").out;
-  for (const std::string model : {"torrance-sparrow", "lambertian", "dirsig"}) {
+  for (const std::string model : {"torrance-sparrow", "lambertian", "dirsig", "glossy-coating",
+                                  "rough-water"}) {
     EXPECT_NE(list.find(model), std::string::npos);
     EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model).code, 0);
   }
@@ -335,7 +336,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"brdf --model torence-sparrow" + angles,
        "command line: --model = torence-sparrow: is not a model of malus; did you mean "
        "torrance-sparrow? known are: "
-       "torrance-sparrow, lambertian, dirsig"},
+       "torrance-sparrow, lambertian, dirsig, glossy-coating, rough-water"},
       {"brdf" + angles,
        "command line: --model: is missing; malus brdf --list shows the models"},
       {copper + "--theta-i 90.5 --theta-r 40 --phi 180 --out a.csv",

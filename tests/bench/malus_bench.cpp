@@ -166,6 +166,8 @@ const std::vector<NamedModel>& namedModels() {
       {"torrance-sparrow", {{"n", "1.5"}, {"k", "2"}, {"sigma", "0.2"}}},
       {"lambertian", {{"reflectance", "0.5"}}},
       {"dirsig", {{"reflectance", "0.1"}, {"height", "1"}, {"width", "20"}}},
+      {"glossy-coating", {{"n", "1.5"}, {"reflectance", "0.5"}, {"sigma", "0.1"}}},
+      {"rough-water", {{"wind", "5"}, {"reflectance", "0.02"}}},
   };
   return models;
 }
