@@ -116,7 +116,7 @@ TEST(BRDFDIRSIGInvariant, ReciprocalRealizableAndFast) {
 
 TEST(BRDFDIRSIGInvariant, SamplesFollowTheirDensity) {
   for (const auto shape : shapes) expectSamplesFollowDensity(varied(shape));
-  EXPECT_LT(drawn(varied(CDLobeShape::cone), varied(CDLobeShape::cone, false), 0.6).p_value,
+  EXPECT_LT(draw(varied(CDLobeShape::cone), varied(CDLobeShape::cone, false), 0.6).p_value,
             false_alarm);  // negative control: another width
 }
 

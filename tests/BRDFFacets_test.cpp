@@ -14,13 +14,14 @@ namespace {
 // Torrance-Sparrow once more, by its weights; `slope` makes them grow with the band.
 class Twin : public BRDFFacets {
  public:
-  Twin(const CDSpectralVector<double>& n, const CDSpectralVector<double>& k, double sigma, double slope = 0)
+  Twin(const CDSpectralVector<double>& n, const CDSpectralVector<double>& k, double sigma,
+       double slope = 0)
       : BRDFFacets(n, k), sigma_(sigma), slope_(slope) {}
   std::string_view name() const override { return "twin"; }
 
  protected:
-  void weigh(const CDBRDFGeometry& g, const CDFacetGeometry& facet, std::size_t first, std::size_t count,
-             double* facets, double* diffuse) const override {
+  void weigh(const CDBRDFGeometry& g, const CDFacetGeometry& facet, std::size_t first,
+             std::size_t count, double* facets, double* diffuse) const override {
     EXPECT_LE(first + count, bands());
     for (std::size_t j = 0; j < count; ++j) {
       const double grow = 1 + slope_ * static_cast<double>(first + j);
@@ -43,7 +44,8 @@ Spectra spectra(std::size_t bands) {
   std::iota(nm.begin(), nm.end(), 400.0);
   const auto grid = CDSpectralGrid::make(nm);
   Spectra s{grid, {grid, 1.0}, {grid, 1.0}, {grid, 0.2}};
-  for (std::size_t j = 0; j < bands; ++j) s.n[j] = 0.3 + 0.01 * double(j), s.k[j] = 1 + double(j % 7);
+  for (std::size_t j = 0; j < bands; ++j)
+    s.n[j] = 0.3 + 0.01 * double(j), s.k[j] = 1 + double(j % 7);
   return s;
 }
 
@@ -51,12 +53,14 @@ CDSpectralVector<CDStokesVector> lightOf(const CDSpectralGridPtr& grid, bool pol
   CDSpectralVector<CDStokesVector> light(grid);
   for (std::size_t j = 0; j < light.size(); ++j) {
     const double s0 = 1 + 0.1 * double(j % 5);
-    light[j] = polarized && j % 3 != 1 ? CDStokesVector(s0, 0.4, -0.3, 0.2) : CDStokesVector(s0);
+    light[j] =
+        polarized && j % 3 != 1 ? CDStokesVector(s0, 0.4, -0.3, 0.2) : CDStokesVector(s0);
   }
   return light;
 }
 
-double largestDifference(const CDSpectralVector<CDStokesVector>& a, const CDSpectralVector<CDStokesVector>& b) {
+double largestDifference(const CDSpectralVector<CDStokesVector>& a,
+                         const CDSpectralVector<CDStokesVector>& b) {
   double largest = 0;
   for (std::size_t j = 0; j < a.size(); ++j)
     for (int c = 0; c < 4; ++c) {
@@ -84,7 +88,8 @@ TEST(BRDFFacetsIdentity, AgreesWithTorranceSparrow) {
       for (std::size_t j = 0; j < bands; ++j)
         for (int e = 0; e < 16; ++e) {
           const double rest = e == 0 ? 0.01 * g.cos_r : 0;
-          EXPECT_NEAR(f.at(j).getMueller(e / 4, e % 4), expected.at(j).getMueller(e / 4, e % 4) + rest, 1e-14);
+          EXPECT_NEAR(f.at(j).getMueller(e / 4, e % 4),
+                      expected.at(j).getMueller(e / 4, e % 4) + rest, 1e-14);
         }
       EXPECT_NEAR(twin.getScore(g), model.getScore(g) + 0.01 * g.cos_r * g.cos_i, 1e-13);
       // the negative control: weights that differ from band to band
@@ -108,7 +113,8 @@ TEST(BRDFFacetsIdentity, TheLightIsTheMatrixTimesTheLight) {
       twin.CDBRDFModel::scatter(g, 0.8, in, plain);
       twin.CDBRDFModel::scatter(CDBRDFGeometry::fromDegrees(20, 60, -140), 0.8, in, wrong);
       EXPECT_LT(largestDifference(fast, plain), 1e-13);  // rounding of sums of numbers near one
-      EXPECT_GT(largestDifference(wrong, plain), 1e-4);  // the other side of the plane of incidence
+      EXPECT_GT(largestDifference(wrong, plain),
+                1e-4);  // the other side of the plane of incidence
     }
 }
 

@@ -11,6 +11,7 @@
 #include "Program.hpp"
 #include "light/CDTable.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "program/Models.hpp"
 
 using namespace malus;
 
@@ -18,6 +19,14 @@ namespace {
 const std::string copper =
     "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --param sigma=0.2 ";
 const std::string plate = copper + "--theta-i 30 --theta-r 40 --phi 180 ";
+
+/// The names in the order of the list, as messages give them.
+std::string knownModels() {
+  std::string names;
+  for (const CDModelEntry& entry : modelEntries())
+    names += (names.empty() ? "" : ", ") + entry.name;
+  return names;
+}
 
 CDTable table(const std::string& text) {
   std::istringstream stream(text);
@@ -192,10 +201,10 @@ TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
 TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
   const Scratch scratch;
   const std::string list = malusIn(scratch.path, "brdf --list").out;
-  for (const std::string model : {"torrance-sparrow", "lambertian", "dirsig", "glossy-coating",
-                                  "rough-water"}) {
-    EXPECT_NE(list.find(model), std::string::npos);
-    EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model).code, 0);
+  ASSERT_GT(modelEntries().size(), 5u);
+  for (const CDModelEntry& model : modelEntries()) {
+    EXPECT_NE(list.find(model.name), std::string::npos);
+    EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model.name).code, 0);
   }
   EXPECT_NE(malusIn(scratch.path, "brdf --describe torrance-sparrow")
                 .out.find("sigma        roughness, standard deviation of the facet slopes "
@@ -335,8 +344,8 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
        "command line: --wavelength-nm = -5 nm: must be above 0; give e.g. 550"},
       {"brdf --model torence-sparrow" + angles,
        "command line: --model = torence-sparrow: is not a model of malus; did you mean "
-       "torrance-sparrow? known are: "
-       "torrance-sparrow, lambertian, dirsig, glossy-coating, rough-water"},
+       "torrance-sparrow? known are: " +
+           knownModels()},
       {"brdf" + angles,
        "command line: --model: is missing; malus brdf --list shows the models"},
       {copper + "--theta-i 90.5 --theta-r 40 --phi 180 --out a.csv",

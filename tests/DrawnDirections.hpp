@@ -18,7 +18,7 @@ struct Drawn {
 /// density integrated over each cell by the midpoint rule.
 inline Drawn draw(const CDBRDFModel& sampler, const CDBRDFModel& claimed, double zenith,
                   std::size_t draws = 200000) {
-  constexpr int rows = 8, columns = 16, fine = 48;
+  constexpr int rows = 8, columns = 16, fine = 64;
   constexpr double pi = std::numbers::pi;
   const CDVector given = CDVector::fromAngles(zenith, 0.3);
   std::vector<double> probability(rows * columns + 1);

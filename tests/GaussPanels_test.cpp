@@ -24,17 +24,20 @@ TEST(GaussPanelsIdentity, Polynomials) {
   for (int n = 0; n <= 9; ++n)
     EXPECT_NEAR(integral(0, 2, std::array{no_break}, [&](double x) { return std::pow(x, n); }),
                 std::pow(2, n + 1) / (n + 1), 1e-12 * std::pow(2, n));
-  EXPECT_GT(std::abs(integral(0, 2, std::array{no_break}, [](double x) { return std::pow(x, 40); }) /
-                         (std::pow(2, 41) / 41) -
-                     1),
-            1e-12);  // negative control: too high a degree for the rule
+  EXPECT_GT(
+      std::abs(integral(0, 2, std::array{no_break}, [](double x) { return std::pow(x, 40); }) /
+                   (std::pow(2, 41) / 41) -
+               1),
+      1e-12);  // negative control: too high a degree for the rule
 }
 
 TEST(GaussPanelsIdentity, RootsAtTheEnds) {
   // the remaining singularity of the substituted root lies at u = +-2; measured error 1e-15
-  EXPECT_NEAR(integral(0, 1, std::array{no_break}, [](double x) { return std::sqrt(x); }), 2.0 / 3, 1e-10);
-  EXPECT_NEAR(integral(-1, 1, std::array{no_break}, [](double x) { return std::sqrt(1 - x * x); }),
-              std::numbers::pi / 2, 1e-10);
+  EXPECT_NEAR(integral(0, 1, std::array{no_break}, [](double x) { return std::sqrt(x); }),
+              2.0 / 3, 1e-10);
+  EXPECT_NEAR(
+      integral(-1, 1, std::array{no_break}, [](double x) { return std::sqrt(1 - x * x); }),
+      std::numbers::pi / 2, 1e-10);
 }
 
 TEST(GaussPanelsIdentity, ABendMustBeTold) {

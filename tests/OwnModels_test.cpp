@@ -13,7 +13,8 @@ using namespace malus;
 namespace {
 const std::map<std::string, CDItemFunction> items{{"X.dirsig", reproduceXDIRSIG},
                                                    {"X.glossy", reproduceXGlossy},
-                                                   {"X.water", reproduceXWater}};
+                                                   {"X.water", reproduceXWater},
+                                                   {"X.beard-maxwell", reproduceXBeardMaxwell}};
 }  // namespace
 
 TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
