@@ -14,7 +14,9 @@ namespace {
 const std::map<std::string, CDItemFunction> items{{"X.dirsig", reproduceXDIRSIG},
                                                    {"X.glossy", reproduceXGlossy},
                                                    {"X.water", reproduceXWater},
-                                                   {"X.beard-maxwell", reproduceXBeardMaxwell}};
+                                                   {"X.beard-maxwell", reproduceXBeardMaxwell},
+                                                   {"X.vegetation", reproduceXVegetation},
+                                                   {"X.sandford", reproduceXSandford}};
 }  // namespace
 
 TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {

@@ -169,6 +169,8 @@ const std::vector<NamedModel>& namedModels() {
       {"glossy-coating", {{"n", "1.5"}, {"reflectance", "0.5"}, {"sigma", "0.1"}}},
       {"rough-water", {{"wind", "5"}, {"reflectance", "0.02"}}},
       {"beard-maxwell", {{"n", "1.5"}, {"k", "0"}, {"bias", "0.002"}, {"sigma", "0.2"}, {"rho_v", "0.01"}}},
+      {"nadal-breon", {{"reflectance", "0.1"}, {"rho", "0.03"}, {"beta", "8"}}},
+      {"robertson-sandford", {{"emissivity", "0.5"}, {"diffuse", "0.3"}, {"b", "0.2"}, {"e", "0.3"}}},
   };
   return models;
 }
