@@ -118,7 +118,7 @@ TEST(BRDFNadalBreonIdentity, DHRAgreesWithThePlainIntegration) {
 
 TEST(BRDFNadalBreonInvariant, TheSampler) {
   expectSamplesFollowDensity(varied());
-  EXPECT_LT(drawn(varied(), land(0.01, 0.03, 10), 0.6).p_value,
+  EXPECT_LT(draw(varied(), land(0.01, 0.03, 10), 0.6).p_value,
             false_alarm);  // negative control
   EXPECT_LT(expectSamplerGivesDHR(land(0.05, 0.03, 8)), 0.01);
   EXPECT_LT(expectSamplerGivesDHR(land(0, 0.03, 8)), 0.01);

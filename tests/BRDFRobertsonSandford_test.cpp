@@ -110,7 +110,7 @@ TEST(BRDFRobertsonSandfordInvariant, RealizableFastAndNotReciprocal) {
 
 TEST(BRDFRobertsonSandfordInvariant, TheSampler) {
   expectSamplesFollowDensity(varied());
-  EXPECT_LT(drawn(varied(), varied(0.45), 0.6).p_value, false_alarm);  // negative control
+  EXPECT_LT(draw(varied(), varied(0.45), 0.6).p_value, false_alarm);  // negative control
   EXPECT_LT(expectSamplerGivesDHR(paint(0.3, 0.3, 0.2, 0.3)), 0.01);
   EXPECT_LT(expectSamplerGivesDHR(paint(0.1, 0, 0.2, 0.02)), 0.01);
 }
