@@ -5,8 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
@@ -175,7 +180,9 @@ const std::vector<BadScene> bad_scenes{
     {R"({"sensor": {"field_of_view_deg": 180}})", "sensor.field_of_view_deg = 180: is not allowed here"},
     {R"({"sensor": {"pixel_pitch_um": 5}})", "does not say in one way what it sees"},
     {R"({"platform": {"position_m": [-2, 2, 0.5]}})", "the camera of frame 0 stands inside of a solid"},
-    {R"({"platform": {"look_at_m": [0, 0, 30]}})", "the camera looks at nothing"},
+    {R"({"platform": {"position_m": [0, 9, -1]}})", "the camera of frame 0 stands 1 m below the ground"},
+    {R"({"platform": {"position_m": [0, 9, 0]}})", "the camera of frame 0 stands 0 m below the ground"},
+    {R"({"platform": {"look_at_m": [0, 0, 30]}, "sky": null})", "the camera looks at nothing but a black sky"},
     {R"({"platform": {"look_at_m": [0, 0, 15]}})", "platform = "},
     {R"({"materials": {"ground": {"reflectance": {"wavelength_nm": [400, 500], "values": [0.1, 0.2]}}}})", "550"},
     {R"({"materials": {"ground": {"reflectance": {"file": "missing.csv", "column": "r"}}}})", "missing.csv"},
@@ -193,6 +200,34 @@ const std::vector<BadScene> bad_scenes{
     {R"({"bands": {"wavelength_nm": [-550]}})", "bands.wavelength_nm[0] = -550: is not allowed here; give"},
     {R"({"malus": 2})", "malus = 2: is not allowed here; give the version of the scene format, 1"},
     {R"({"radiometry": {"rays": [0]}})", "radiometry.rays[0] = 0: is not allowed here"},
+    {R"({"radiometry": {"mis": 1}})", "radiometry.mis = 1: is not allowed here; give true or false"},
+    {R"({"sensor": {"polarimeter": {}}})", "does not say in one way where its filters are"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"polarizer_deg": 0}, {"polarizer_deg": 45}, {"polarizer_deg": 90}]}}})",
+     "has filters that cannot tell S3; add filters that answer to it (a retarder before a polarizer, for S3), or write "
+     "\"recover\": [\"S0\", \"S1\", \"S2\"]"},
+    {R"({"sensor": {"polarimeter": {"mosaic": [[{"polarizer_deg": 0}, {"polarizer_deg": 45}]], "recover": ["S0"]}}})",
+     "has filters that cannot tell S0"},
+    {R"({"sensor": {"polarimeter": {"mosaic": [[{}, {}], [{}]], "recover": []}}})", "mosaic[1]"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"name": "a"}, {"name": "a"}], "recover": []}}})",
+     "has the name a of another camera"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"retarder_deg": 0}], "recover": []}}})", "has half a retarder"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"polariser_deg": 0}], "recover": []}}})",
+     "polariser_deg: is not a known key here; did you mean polarizer_deg?"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"transmittance": 1.5}], "recover": []}}})", "at most 1"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[1, 0, 0, 0]]}], "recover": []}}})",
+     "is no Mueller matrix"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[0.5, 0.6, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]}],
+         "recover": []}}})",
+     "reads less than nothing of some light"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"calibration": "missing.img"}], "recover": []}}})", "missing.img"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S4"]}}})", "recover[0] = \"S4\": is not allowed here"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"], "window_px": [99, 1]}}})",
+     "the window of a polarimeter must fit into its image"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"],
+         "noise": {"electrons_per_unit": 10, "full_well_electrons": -5}}}})",
+     "full_well_electrons = -5: is not allowed here; give a number above 0"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"], "noise": {"read_noise_electrons": 3}}}})",
+     "lacks \"electrons_per_unit\""},
 };
 }  // namespace
 
@@ -249,6 +284,267 @@ TEST(CommandRenderIdentity, AFullDiskIsToldBeforeTheFirstRayAndLeavesNothing) {
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("cannot be written"), std::string::npos) << outcome.err;
   EXPECT_EQ(filesBelow(place.scratch.path), 1u);
+}
+
+TEST(CommandRenderIdentity, ACameraMayLookAtTheSkyAlone) {
+  json scene = smallScene();
+  scene["platform"]["look_at_m"] = {0, 0, 30};
+  const Outcome outcome = Workplace(scene).render("--dry-run");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST(CommandRenderIdentity, AResumeAfterAnInputHasChangedIsRefused) {
+  for (const char* changed : {"bar.obj", "s.json"}) {
+    json scene = smallScene(160, 60);
+    scene["geometry"][0]["obj"] = "bar.obj";
+    const Workplace place(scene);
+    put(place.scratch / "bar.obj", contents(scenes + "chunky-bar.obj"));
+    ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL)));
+    const std::string before = place.file(changed);
+    put(place.scratch / changed, before + "\n");
+    const Outcome refused = place.render("--out b --resume");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find(std::string(changed) + ": is not the file that this frame was made with"),
+              std::string::npos)
+        << refused.err;
+    put(place.scratch / changed, before);
+    EXPECT_EQ(place.render("--out b --resume").code, 0);
+    put(place.scratch / changed, before + "\n");  // and when the frame is done
+    EXPECT_EQ(place.render("--out b --resume").code, 2);
+  }
+}
+
+TEST(CommandRenderInvariant, TheRecordOfAResumedRenderCountsTheWholeFrame) {
+  const Workplace place(smallScene(160, 60));
+  ASSERT_EQ(place.render("--threads 1 --out a").code, 0);
+  ASSERT_TRUE(WIFEXITED(interrupt(place, SIGINT)));
+  const double before = json::parse(place.file("b/s.run.json.part"))["seconds"];
+  ASSERT_EQ(place.render("--out b --resume").code, 0);
+  const json whole = json::parse(place.file("a/s.run.json")), resumed = json::parse(place.file("b/s.run.json"));
+  EXPECT_EQ(whole["rays_followed"], resumed["rays_followed"]);
+  EXPECT_EQ(whole["files"], resumed["files"]);
+  EXPECT_GT(before, 0);
+  EXPECT_GT(resumed["seconds"], before);
+  EXPECT_FALSE(std::filesystem::exists(place.scratch / "b/s.run.json.part"));
+}
+
+TEST(CommandRenderInvariant, AFrameThatLacksItsLastFilesIsNotRenderedAgain) {
+  const Workplace place(smallScene());
+  ASSERT_EQ(place.render("--out a").code, 0);
+  const std::string record = place.file("a/s.run.json"), picture = place.file("a/s.img");
+  std::filesystem::remove(place.scratch / "a/s.run.json");
+  const Outcome outcome = place.render("--out a --resume");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find(": 0 of "), std::string::npos) << outcome.err;
+  EXPECT_EQ(json::parse(place.file("a/s.run.json"))["rays_followed"], json::parse(record)["rays_followed"]);
+  EXPECT_EQ(place.file("a/s.img"), picture);
+}
+
+namespace {
+json fourCameras() {
+  return json::parse(R"([{"name": "P0", "polarizer_deg": 0}, {"name": "P45", "polarizer_deg": 45},
+      {"name": "P90", "polarizer_deg": 90},
+      {"name": "right", "retarder_deg": 45, "retardance_deg": 90, "polarizer_deg": 0}])");
+}
+const json mosaic = json::parse(R"([[{"polarizer_deg": 90}, {"polarizer_deg": 45}],
+                                    [{"polarizer_deg": 135}, {"polarizer_deg": 0}]])");
+
+double farthest(const CDCube& a, const CDCube& b, std::size_t components = 4) {
+  double most = a.data.size() == b.data.size() ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(a.data.size(), b.data.size()); ++i)
+    if (i % 4 < components) most = std::max(most, std::abs(double(a.data[i]) - double(b.data[i])));
+  return most;
+}
+double brightest(const CDCube& cube) { return *std::max_element(cube.data.begin(), cube.data.end()); }
+// Numbers are rounded to float three times on the way, and the condition numbers here are below 5.
+constexpr double float_rounding = 3 * 5 * 0x1p-24;
+}  // namespace
+
+TEST(PolarimeterIdentity, FourIdealCamerasRecoverTheRenderedStokesVectors) {
+  json scene = smallScene();
+  scene["bands"]["wavelength_nm"] = {500, 600};
+  scene["sensor"]["polarimeter"]["cameras"] = fourCameras();
+  const Workplace place(scene);
+  const Outcome outcome = place.render("--out a");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const CDCube light = readCube(place.scratch / "a/s.img"), back = readCube(place.scratch / "a/s.recovered.img");
+  const CDCube readings = readCube(place.scratch / "a/s.readings.img");
+  EXPECT_EQ(readings.header.channels, (std::vector<std::string>{"P0 500", "P45 500", "P90 500", "right 500", "P0 600",
+                                                                "P45 600", "P90 600", "right 600"}));
+  EXPECT_EQ(readings.header.unit, light.header.unit);
+  EXPECT_LT(farthest(light, back), float_rounding * brightest(light));
+  // S3 is there to be recovered, and by the right-handed camera: its reading is (S0 + S3) / 2
+  double s3 = 0;
+  for (std::size_t i = 0; i < light.data.size() / 4; ++i) {
+    s3 = std::max(s3, std::abs(double(light.data[4 * i + 3])));
+    EXPECT_NEAR(readings.data[4 * i + 3], (light.data[4 * i] + light.data[4 * i + 3]) / 2,
+                float_rounding * brightest(light));
+  }
+  EXPECT_GT(s3, 1e3 * float_rounding * brightest(light));
+  const json info = json::parse(place.file("a/s.run.json"))["polarimeter"];
+  EXPECT_EQ(info["measures"], (json{"S0", "S1", "S2", "S3"}));
+  EXPECT_EQ(malusIn(place.scratch.path, "products a/s.recovered.img").code, 0);
+  EXPECT_EQ(malusIn(place.scratch.path, "info a/s.readings.img").code, 0);
+}
+
+TEST(PolarimeterIdentity, NegativeControlATurnedPolarizerIsNoticed) {
+  json scene = smallScene();
+  scene["sensor"]["polarimeter"]["cameras"] = fourCameras();
+  const Workplace place(scene);
+  ASSERT_EQ(place.render("--out a").code, 0);
+  scene["sensor"]["polarimeter"]["cameras"][1]["polarizer_deg"] = 44.9;
+  const Workplace other(scene);
+  ASSERT_EQ(other.render("--out a").code, 0);
+  EXPECT_EQ(place.file("a/s.img"), other.file("a/s.img"));
+  const CDCube a = readCube(place.scratch / "a/s.readings.img"), b = readCube(other.scratch / "a/s.readings.img");
+  EXPECT_GT(farthest(a, b), 10 * float_rounding * brightest(a));
+}
+
+TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
+  json scene = smallScene(40, 1);  // the sun alone: no noise, and the plate is even
+  scene["radiometry"]["rays"] = {1};
+  scene["sensor"]["polarimeter"] = {{"mosaic", mosaic}, {"recover", {"S0", "S1", "S2"}}};
+  scene["geometry"] = json::parse(R"([{"ground": {"material": "copper-030"}}])");
+  scene["sensor"]["field_of_view_deg"] = 1e-4;  // one direction
+  const Workplace place(scene);
+  const Outcome outcome = place.render("--out a");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const CDCube light = readCube(place.scratch / "a/s.img"), back = readCube(place.scratch / "a/s.recovered.img");
+  // over 1e-4 degrees the copper's lobe changes by 2e-6 / sigma of itself
+  const double even = 1e-5 * brightest(light);
+  EXPECT_LT(farthest(light, back, 3), even);
+  EXPECT_GT(std::abs(light.data[1]), 100 * even);
+  EXPECT_NE(back.header.description.find("S3 is not measured"), std::string::npos);
+  scene["geometry"] = smallScene()["geometry"];
+  scene["sensor"]["field_of_view_deg"] = 36.87;
+  const Workplace edges(scene);
+  ASSERT_EQ(edges.render("--out a").code, 0);
+  const CDCube seen = readCube(edges.scratch / "a/s.img");
+  EXPECT_GT(farthest(seen, readCube(edges.scratch / "a/s.recovered.img"), 3), 0.1 * brightest(seen));
+}
+
+TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
+  constexpr std::size_t width = 40, height = 33;
+  json scene = smallScene();
+  json cameras = fourCameras();
+  scene["sensor"]["polarimeter"]["cameras"] = cameras;
+  const Workplace ideal(scene);
+  ASSERT_EQ(ideal.render("--out a").code, 0);
+  const std::array<std::string, 4> files{"first.img", "second.img", "third.img", "fourth.img"};
+  for (std::size_t i = 0; i < 4; ++i) cameras[i] = {{"name", cameras[i]["name"]}, {"calibration", files[i]}};
+  scene["sensor"]["polarimeter"]["cameras"] = cameras;
+  const Workplace place(scene);
+  const std::array<CDMuellerMatrix, 4> filters{linearPolarizer(0), linearPolarizer(std::numbers::pi / 4),
+                                               linearPolarizer(std::numbers::pi / 2), circularPolarizer(1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    CDCubeHeader header;
+    header.width = width, header.height = height;
+    for (int j = 0; j < 16; ++j) header.channels.push_back(std::to_string(j));
+    CDCubeWriter writer(place.scratch / files[i], header);
+    std::vector<float> numbers;
+    for (std::size_t pixel = 0; pixel < width * height; ++pixel)
+      numbers.insert(numbers.end(), filters[i].data(), filters[i].data() + 16);
+    writer.write({0, 0, width, height}, numbers);
+    writer.finish();
+  }
+  const Outcome outcome = place.render("--out a");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const CDCube a = readCube(ideal.scratch / "a/s.readings.img"), b = readCube(place.scratch / "a/s.readings.img");
+  EXPECT_LT(farthest(a, b), float_rounding * brightest(a));
+  EXPECT_LT(farthest(readCube(place.scratch / "a/s.img"), readCube(place.scratch / "a/s.recovered.img")),
+            float_rounding * brightest(a));
+  scene["sensor"]["width"] = 41;
+  put(place.scratch / "s.json", scene.dump(1));
+  const Outcome wrong = place.render("--out c");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("has 40 x 33 pixels and the sensor 41 x 33; give a calibration of the sensor's size"),
+            std::string::npos)
+      << wrong.err;
+  EXPECT_FALSE(std::filesystem::exists(place.scratch / "c"));
+}
+
+TEST(PolarimeterInvariant, NoiseHasTheMeanAndTheVarianceOfItsElectrons) {
+  constexpr double gain = 2e4, read = 30;
+  json scene = smallScene(128);
+  scene["sensor"]["polarimeter"] = {{"cameras", fourCameras()}};
+  const Workplace clean(scene);
+  ASSERT_EQ(clean.render("--out a").code, 0);
+  scene["sensor"]["polarimeter"]["noise"] = {{"electrons_per_unit", gain}, {"read_noise_electrons", read}};
+  const Workplace noisy(scene);
+  ASSERT_EQ(noisy.render("--out a").code, 0);
+  EXPECT_EQ(clean.file("a/s.img"), noisy.file("a/s.img"));
+  const CDCube mean = readCube(clean.scratch / "a/s.readings.img"), drawn = readCube(noisy.scratch / "a/s.readings.img");
+  double sum = 0, squares = 0;
+  const auto n = double(mean.data.size());
+  for (std::size_t i = 0; i < mean.data.size(); ++i) {
+    const double sigma = std::sqrt(gain * double(mean.data[i]) + read * read) / gain;
+    const double deviate = (double(drawn.data[i]) - double(mean.data[i])) / sigma;
+    sum += deviate, squares += deviate * deviate;
+  }
+  // five standard errors of a standard deviate's mean and variance: 1 in 3e5 that a good program fails; the
+  // kurtosis of Poisson's distribution adds less than 1 in 400 to the 2
+  EXPECT_NEAR(sum / n, 0, 5 / std::sqrt(n));
+  EXPECT_NEAR(squares / n, 1, 5 * std::sqrt(2.0025 / n));
+  EXPECT_GT(0.05, 5 * std::sqrt(2.0025 / n));  // a read noise of 32 for 30 would be seen
+}
+
+TEST(PolarimeterInvariant, ReadingsAreTheSameBitsForThreadsPartsAndResumes) {
+  json scene = smallScene(160, 60);
+  scene["sensor"]["polarimeter"] = {{"mosaic", mosaic},
+                                    {"recover", {"S0", "S1", "S2"}},
+                                    {"noise", {{"electrons_per_unit", 1e4}, {"full_well_electrons", 3000}}}};
+  const Workplace place(scene);
+  ASSERT_EQ(place.render("--threads 1 --out a").code, 0);
+  ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL)));
+  ASSERT_EQ(place.render("--out b --resume --threads 3").code, 0);
+  for (const char* part : {"0,0,37,153", "37,0,160,80", "37,80,160,153"})
+    ASSERT_EQ(place.render(std::string("--out c --tile ") + part).code, 0);
+  ASSERT_EQ(malusIn(place.scratch.path, "merge c").code, 0);
+  for (const char* name : {"s.img", "s.readings.img", "s.recovered.img"}) {
+    const std::string whole = place.file(std::string("a/") + name);
+    ASSERT_FALSE(whole.empty());
+    EXPECT_EQ(whole, place.file(std::string("b/") + name)) << name;
+    EXPECT_EQ(whole, place.file(std::string("c/") + name)) << name;
+  }
+  const json a = json::parse(place.file("a/s.run.json"))["polarimeter"], b = json::parse(place.file("b/s.run.json"))["polarimeter"];
+  EXPECT_EQ(a["full_wells"], b["full_wells"]);
+  EXPECT_GT(a["full_wells"], 0);
+  ASSERT_EQ(place.render("--out d --seed 6").code, 0);
+  EXPECT_NE(place.file("a/s.readings.img"), place.file("d/s.readings.img"));
+}
+
+TEST(PolarimeterIdentity, AFilterMayDependOnTheBand) {
+  json scene = smallScene();
+  scene["bands"]["wavelength_nm"] = {500, 600};
+  scene["radiometry"]["rays"] = {1};
+  scene["sensor"]["polarimeter"] = {
+      {"cameras", json::parse(R"([{"transmittance": {"wavelength_nm": [400, 700], "values": [0.4, 0.7]}},
+                                  {"mueller": [[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],
+                                               [[0.5,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]]}])")},
+      {"recover", {"S0"}}};
+  const Workplace place(scene);
+  const Outcome outcome = place.render("--out a");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const CDCube light = readCube(place.scratch / "a/s.img"), readings = readCube(place.scratch / "a/s.readings.img");
+  const std::array<double, 4> passes{0.5, 1, 0.6, 0.5};
+  for (std::size_t pixel = 0; pixel < 40 * 33; ++pixel)
+    for (std::size_t i = 0; i < 4; ++i)
+      ASSERT_NEAR(readings.data[4 * pixel + i], passes[i] * light.data[8 * pixel + 4 * (i / 2)],
+                  float_rounding * brightest(light));
+}
+
+TEST(SceneIdentity, SobolAndTheSkysShareAreChosenInTheScene) {
+  json scene = smallScene(16, 8);
+  scene["radiometry"]["sampling"] = "importance";
+  const auto option = [&](const char* key, bool value) {
+    scene["radiometry"][key] = value;
+    return readSceneText(scene.dump(), "s.json", ".").radiometry;
+  };
+  EXPECT_TRUE(option("sobol", true).sobol);
+  EXPECT_FALSE(option("sobol", false).sobol);
+  EXPECT_TRUE(option("mis", true).mis);
+  EXPECT_FALSE(option("mis", false).mis);
+  EXPECT_EQ(option("mis", true).sampling, CDSampling::importance);
 }
 
 TEST(SceneIdentity, AllScenesThatShipWithMalusAreGood) {
