@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 using namespace malus;
 
@@ -54,6 +55,43 @@ TEST(CDRayleighSkyInvariant, TheTableIsTheExactLight) {
   }
   EXPECT_LT(worst, 2e-6);
   EXPECT_GT(worst, 2e-10);  // a table is not the light itself: the comparison sees differences
+}
+
+// Single precision: ten roundings of 6e-8, and directions that are known to 1e-7, where the sky is steepest
+// in 1/mu near the horizon: 1e-5 of the radiance.
+TEST(CDRayleighSkyInvariant, ManyDirectionsAtOnceAreTheSameLight) {
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> uniform;
+  for (const double zenith_deg : {0.0, 30.0, 80.0}) {
+    const CDRayleighSky sky(sunFrom(zenith_deg, 77), CDRayleighSky::clearAir(grid, 0.3));
+    std::vector<float> x, y, z;
+    for (int i = 0; i < 150; ++i) {  // more than two blocks of 64, and an odd rest
+      CDVector d = CDVector::fromAngles(std::acos(1.1 * uniform(engine) - 0.1),
+                                        2 * pi * uniform(engine));
+      if (i == 0) d = up;
+      if (i == 1) d = {1, 0, 0};
+      if (i == 2) d = normalized({1e-4, 2e-4, 1});
+      x.push_back(static_cast<float>(d.x)), y.push_back(static_cast<float>(d.y));
+      z.push_back(static_cast<float>(d.z));
+    }
+    std::vector<float> out(x.size() * 4 * 3);
+    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out.data());
+    double worst = 0, mirrored = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Spectrum one = ask(sky, normalized({x[i], y[i], z[i]}));
+      for (std::size_t b = 0; b < 3; ++b) {
+        const CDStokesVector many(out[(4 * i) * 3 + b], out[(4 * i + 1) * 3 + b],
+                                  out[(4 * i + 2) * 3 + b], out[(4 * i + 3) * 3 + b]);
+        const CDStokesVector other(many.getStokes(0), many.getStokes(1), -many.getStokes(2), 0);
+        worst = std::max(worst, distance(many, one[b]) / one[b].getScalar());
+        mirrored = std::max(mirrored, distance(other, one[b]) / one[b].getScalar());
+      }
+    }
+    EXPECT_LT(worst, 1e-5) << zenith_deg;
+    if (zenith_deg > 0) {
+      EXPECT_GT(mirrored, 0.1);  // control
+    }
+  }
 }
 
 RC_GTEST_PROP(CDRayleighSkyInvariant, SunAndSkyTurnTogether, ()) {

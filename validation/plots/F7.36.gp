@@ -1,4 +1,4 @@
-# Figure 7.36: DoLP against the angle from the sun, 700 nm, 3.4 km (scan.csv).
+# Figure 7.36: DoLP against the angle from the sun, 700 nm, 3.4 km (scan.csv; with aerosol aerosol.csv).
 width = 820
 load style
 set xrange [0:150]; set xtics 30; set yrange [0:1]
@@ -8,5 +8,6 @@ plot 'scan.csv' using 'angle_deg':'single' with lines title 'single scattering',
      'scan.csv' using 'angle_deg':'black' with lines title 'exact, black ground', \
      'scan.csv' using 'angle_deg':'albedo_0.1' with lines title 'albedo 0.1', \
      'scan.csv' using 'angle_deg':'albedo_0.2' with lines title 'albedo 0.2', \
-     'scan.csv' using 'angle_deg':'aerosol' with lines title 'aerosol 0.01', \
-     'scan.csv' using 'angle_deg':'both' with lines title 'albedo 0.2 and aerosol'
+     'aerosol.csv' using 'angle_deg':'aerosol' with lines title 'aerosol 0.01', \
+     'aerosol.csv' using 'angle_deg':'spheroids' with lines title 'spheroids 0.01', \
+     'aerosol.csv' using 'angle_deg':'both' with lines title 'albedo 0.2 and aerosol'

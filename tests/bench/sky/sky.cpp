@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "world/CDLayeredLight.hpp"
 #include "world/CDRayleighSky.hpp"
 
 using namespace malus;
@@ -76,5 +77,49 @@ static void rayleighTableDirection(benchmark::State& state) {
   }
 }
 BENCHMARK(rayleighTableDirection)->Arg(1)->Arg(100)->Unit(benchmark::kNanosecond);
+
+// As the renderer asks: 512 directions of a hemisphere at once, in single precision; the time is that of one of them.
+static void rayleighManyDirections(benchmark::State& state) {
+  const CDRayleighSky sky = skyOf(static_cast<int>(state.range(0)));
+  std::vector<float> x, y, z;
+  for (int i = 0; i < 512; ++i) {
+    const CDVector d = CDVector::fromAngles(std::acos((i + 0.5) / 512), 2.4 * i);
+    x.push_back(static_cast<float>(d.x)), y.push_back(static_cast<float>(d.y));
+    z.push_back(static_cast<float>(d.z));
+  }
+  std::vector<float> out(512 * 4 * static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) {
+    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["directions"] =
+      benchmark::Counter(512, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(rayleighManyDirections)->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMicrosecond);
+
+// Adding and doubling: the same sky, by streams; "off" as above.
+static void doublingRayleigh(benchmark::State& state) {
+  const int streams = static_cast<int>(state.range(0));
+  CDStokesVector light;
+  for (auto _ : state) {
+    light = CDLayeredLight({{{rayleighScatterer(0), 0.5}}}, 0.6, 0.25, pi, {0.4}, {streams, -1})
+                .down(0, pi / 2);
+    benchmark::DoNotOptimize(light);
+  }
+  state.counters["off"] = off(light);
+}
+BENCHMARK(doublingRayleigh)->Arg(8)->Arg(12)->Arg(16)->Arg(24)->Arg(32)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Air with an aerosol that has so many terms (Henyey and Greenstein): all harmonics, one line of sight.
+static void doublingAerosol(benchmark::State& state) {
+  const double g = static_cast<double>(state.range(0)) / 100;
+  const CDScatterer aerosol = henyeyGreensteinScatterer(g);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        CDLayeredLight({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.1}}}, 0.6, 0.25, pi, {0.4})
+            .down(0, pi / 2));
+  state.counters["terms"] = static_cast<double>(aerosol.terms().size());
+}
+BENCHMARK(doublingAerosol)->Arg(30)->Arg(50)->Arg(70)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 BENCHMARK_MAIN();
