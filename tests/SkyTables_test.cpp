@@ -156,7 +156,7 @@ TEST(SkyTablesInvariant, RefusesWithASentence) {
   EXPECT_NE(messageOf(layout), "");  // scattered, and not declared: a grid with holes
   const std::string degree_only = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP\n";
   const std::string sun = "# sun_zenith_deg: 40\n# sun_azimuth_deg: 100\n";
-  EXPECT_NE(messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n").find("sun_zenith_deg"), std::string::npos);
+  EXPECT_NE(messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n").find("sun_zenith_deg"), std::string::npos) << messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n");
   EXPECT_EQ(messageOf(sun + degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n"), "");
   EXPECT_NE(messageOf(sun + degree_only + "0,0,500,1,10\n90,0,500,1,0.1\n").find("fraction"), std::string::npos);
   const std::string components = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n";
