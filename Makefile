@@ -18,7 +18,7 @@ TEST    := python3-gdal python3-spectral
 # What the book on paper wants besides; asked for only by make pdf.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fresh-machine clean help
+.PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fuzz fresh-machine clean help
 .PHONY: need-program need-book need-test need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -76,6 +76,13 @@ coverage: need-test ## which lines of nw/ the tests reach
 	@find build-coverage -name '*.gcda' -delete
 	@ctest --test-dir build-coverage -j $(JOBS) --output-on-failure --progress
 	@doc/loom/coverage.py build-coverage
+
+FUZZ_SECONDS ?= 600
+fuzz: need-program ## throw mutilated scenes, meshes and tables at the readers (FUZZ_SECONDS=600 in all)
+	@$(NEED) clang libclang-rt-14-dev
+	@cmake --preset fuzz $(GENERATOR) >/dev/null
+	@cmake --build build-fuzz -j $(JOBS)
+	@tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 
 fresh-machine: ## prove the package list in a minimal Debian root (as root)
 	@tests/fresh-machine.sh

@@ -1,8 +1,11 @@
 // Meshes, their places and their door (nw/world/CDGeometry.nw).
 #include "world/CDGeometry.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "Scratch.hpp"
@@ -60,6 +63,56 @@ TEST(CDGeometryIdentity, BadMeshesNameTheLine) {
   EXPECT_NE(complaint("v 0 0 0\nv 1 0 0\nf 1 2\n").find("fewer than three"), std::string::npos);
   EXPECT_NE(complaint("v 0 0 0\n").find("no faces"), std::string::npos);
   EXPECT_EQ(complaint(square), "none");  // the negative control: a good mesh is not refused
+}
+
+namespace {
+struct Shape {
+  double area = 0, least_z = 1;  // of all triangles together; the normal's z that points most downwards
+};
+Shape shapeOf(const CDMesh& mesh) {
+  Shape shape;
+  const CDSceneGeometry scene = placed(mesh, {});
+  for (const CDTriangle& t : scene.triangles()) {
+    const CDVector ab = scene.vertices()[t.b] - scene.vertices()[t.a];
+    shape.area += 0.5 * cross(ab, scene.vertices()[t.c] - scene.vertices()[t.a]).getLength();
+    shape.least_z = std::min(shape.least_z, scene.normal(t).z);
+  }
+  return shape;
+}
+const std::string arrow = "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\n";  // the last corner points inwards; area 6
+}  // namespace
+
+TEST(CDGeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
+  for (const std::string face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
+    const Shape shape = shapeOf(parsed(arrow + face + "\n"));
+    EXPECT_NEAR(shape.area, 6, rounding * 10) << face;
+    EXPECT_NEAR(shape.least_z, 1, rounding) << face;
+  }
+  // the negative control: the fan from the first corner, cut by hand
+  const Shape naive = shapeOf(parsed(arrow + "f 1 2 3\nf 1 3 4\n"));
+  EXPECT_GT(naive.area, 7);
+  EXPECT_LT(naive.least_z, 0);
+  EXPECT_NEAR(shapeOf(parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n")).area, 7, rounding * 10);
+}
+
+TEST(CDGeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
+  std::string star;
+  for (int i = 0; i < 10; ++i) {
+    const double r = i % 2 ? 0.3 : 1, phi = std::numbers::pi * i / 5;
+    star += fmt::format("v {} {} 0\n", r * std::cos(phi), r * std::sin(phi));
+  }
+  EXPECT_EQ(complaint(star + "f 1 2 3 4 5 6 7 8 9 10\n"),
+            "m.obj:11: f = f 1 2 3 4 5 6 7 8 9 10: is a polygon that no fan of triangles from one corner fills; let the program "
+            "that made the mesh cut it into triangles");
+}
+
+TEST(CDGeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
+  const Scratch scratch;
+  EXPECT_THROW(readOBJ(scratch.path), CDInputError);
+  const CDMesh mesh = parsed(square);
+  EXPECT_THROW(placed(mesh, CDTransform::scale(1e12)), CDInputError);
+  EXPECT_THROW(placed(mesh, CDTransform::scale(1e308 * 10)), CDInputError);
+  EXPECT_NO_THROW(placed(mesh, CDTransform::scale(1e6)));
 }
 
 TEST(CDGeometryIdentity, TransformsComposeInOrder) {

@@ -1,0 +1,40 @@
+// What may happen at a door for users' files: it opens, or it says in one line what is wrong. All else is a finding.
+#pragma once
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+
+#include "light/CDError.hpp"
+
+namespace malus::fuzzing {
+/// Any exception but CDInputError escapes, and stops the fuzzer; so does a message of no or many lines.
+template <class Open>
+int knock(const Open& open) {
+  try {
+    open();
+  } catch (const CDInputError& error) {
+    const std::string_view message = error.what();
+    if (message.empty() || message.find('\n') != std::string_view::npos) {
+      std::fprintf(stderr, "not one line: %s\n", error.what());
+      std::abort();
+    }
+  }
+  return 0;
+}
+
+inline std::string textOf(const std::uint8_t* data, std::size_t size) {
+  return std::string(reinterpret_cast<const char*>(data), size);
+}
+
+/// A file of this process with the given end of its name and content.
+inline std::filesystem::path fileWith(const std::string& text, const std::string& extension) {
+  const auto path = std::filesystem::temp_directory_path() / ("malus-fuzz-" + std::to_string(getpid()) + extension);
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
+  return path;
+}
+}  // namespace malus::fuzzing

@@ -1,0 +1,50 @@
+// The doors for tables: the first byte says what the rest is taken for.
+#include <sstream>
+
+#include "Door.hpp"
+#include "light/CDTable.hpp"
+#include "world/CDMaterial.hpp"
+#include "world/CDSky.hpp"
+
+using namespace malus;
+
+namespace {
+const CDSpectralGridPtr& grid() {
+  static const CDSpectralGridPtr bands = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  return bands;
+}
+
+void asNumbers(const std::string& text) {
+  std::istringstream stream(text);
+  const CDTable table = CDTable::parse(stream, "table.csv");
+  for (const std::string& column : table.columns())
+    for (std::size_t row = 0; row < table.rows(); ++row) table.number(row, column);
+}
+
+void asSky(const std::string& text) {
+  std::istringstream stream(text);
+  const CDTableSky sky(CDTable::parse(stream, "sky.csv"), grid());
+}
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string text = fuzzing::textOf(data + 1, size - 1);
+  return fuzzing::knock([&] {
+    switch (data[0] % 5) {
+      case 0:
+        return asNumbers(text);
+      case 1:
+        readSpectrum(fuzzing::fileWith(text, ".csv"), "reflectance", grid());
+        return;
+      case 2:
+        readOpticalConstants(fuzzing::fileWith(text, ".csv"), grid());
+        return;
+      case 3:
+        readOpticalConstants(fuzzing::fileWith(text, ".yml"), grid());
+        return;
+      default:
+        return asSky(text);
+    }
+  });
+}
