@@ -133,3 +133,84 @@ TEST(GatherIdentity, OfLambertsSurface) {
   EXPECT_LT(apart(fast, plain), 1e-14);
   EXPECT_FALSE(fast.anyPolarized());
 }
+
+// ---- light that differs from direction to direction
+namespace {
+/// Random polarised light of so many directions and bands, [direction][component][band].
+std::vector<float> unlikeLight(std::size_t directions, std::size_t bands, std::uint64_t seed) {
+  CDRandom random(seed);
+  std::vector<float> light;
+  for (std::size_t i = 0; i < directions; ++i)
+    for (int component = 0; component < 4; ++component)
+      for (std::size_t band = 0; band < bands; ++band)
+        light.push_back(float(component == 0 ? 1 + random.uniform() : 0.5 * (2 * random.uniform() - 1)));
+  return light;
+}
+}  // namespace
+
+// 5e-6: as above, and the two rotations, whose cosines and sines have single precision's digits.
+TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
+  for (const auto& options : {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
+                              with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+    for (const std::size_t bands : {1u, 2u, 11u, 300u})
+      for (const std::size_t count : {16u, 90u, 144u}) {
+        const BRDFTorranceSparrow model = mixture(bands, options);
+        const Directions from(count, bands + count);
+        const auto light = unlikeLight(count, bands, count);
+        for (const double zenith : {0.0, 0.01, 0.7, 1.4}) {
+          CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+          const CDVector viewer = CDVector::fromAngles(zenith, 2);
+          model.gatherEach(viewer, from.view(), light.data(), fast);
+          model.CDBRDFModel::gatherEach(viewer, from.view(), light.data(), plain);
+          EXPECT_LT(apart(fast, plain), 5e-6) << bands << " bands " << count << " directions at " << zenith;
+        }
+      }
+}
+
+// Source and viewer in one direction leave each rotation undetermined, but not what both do together; along the normal
+// the azimuth is a convention. 2e-5: half a dozen directions with their errors unaveraged.
+TEST(GatherIdentity, GatherEachAtSingularDirections) {
+  const BRDFTorranceSparrow model = mixture(2, as_thesis);
+  for (const double zenith : {0.0, 1e-6, 1e-4, 0.01, 0.5, 1.2, 1.5}) {
+    const CDVector v = CDVector::fromAngles(zenith, 1);
+    for (const double off : {0.0, 1e-6, 1e-4, 1e-2})
+      for (const CDVector& d : {CDVector::fromAngles(zenith + off, 1 + off), CDVector{-v.x, -v.y, v.z}, CDVector{0, 0, 1},
+                                CDVector::fromAngles(1.57, 4)}) {
+        Directions from(0);
+        for (int i = 0; i < 16; ++i)
+          from.x.push_back(float(d.x)), from.y.push_back(float(d.y)), from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
+        const auto light = unlikeLight(16, 2, 7);
+        CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+        model.gatherEach(v, from.view(), light.data(), fast);
+        model.CDBRDFModel::gatherEach(v, from.view(), light.data(), plain);
+        EXPECT_LT(apart(fast, plain), 2e-5) << zenith << " off " << off << " towards " << d.x << " " << d.y << " " << d.z;
+      }
+  }
+}
+
+TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
+  const BRDFTorranceSparrow model = mixture(3, as_thesis);
+  const Directions from(96);
+  auto light = unlikeLight(96, 3, 1);
+  CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
+  model.gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), fast);
+  for (std::size_t i = 0; i < 96; ++i)  // each by a thousandth of a radian, to first order
+    for (std::size_t j = 0; j < 3; ++j) light[(4 * i + 1) * 3 + j] += 2e-3f * light[(4 * i + 2) * 3 + j];
+  model.CDBRDFModel::gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), plain);
+  EXPECT_GT(apart(fast, plain), 2e-5);
+}
+
+// Sums in double precision of the same numbers: rounding only.
+TEST(GatherIdentity, GatherEachOfLambertsSurface) {
+  const auto grid = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  const Directions from(90);
+  const auto light = unlikeLight(90, 3, 5);
+  for (const double s : {0.0, 0.5, 1.0}) {
+    const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}), s);
+    CDSpectralVector<CDStokesVector> fast(grid), plain(grid);
+    model.gatherEach({0, 0, 1}, from.view(), light.data(), fast);
+    model.CDBRDFModel::gatherEach({0, 0, 1}, from.view(), light.data(), plain);
+    EXPECT_LT(apart(fast, plain), 1e-14) << s;
+    EXPECT_EQ(fast.anyPolarized(), s > 0);
+  }
+}
