@@ -9,6 +9,7 @@
 #include "light/CDError.hpp"
 #include "matter/BRDFDiffuse.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "world/CDRayleighSky.hpp"
 
 using namespace malus;
 
@@ -336,4 +337,63 @@ TEST(CDRadiometryIdentity, RefusesWhatDoesNotFit) {
   EXPECT_THROW(CDRadiometry(world, nullptr, {}), CDMathError);
   world.materials[0].brdf = nullptr;
   EXPECT_THROW(CDRadiometry(world, tracer, {}), CDMathError);
+}
+
+// ---- a polarised sky: the sum written out in double precision, frames turned by angles
+namespace {
+/// A Rayleigh sky on the test's band; `sign` -1 turns its S2 round.
+class TestSky : public CDSky {
+ public:
+  explicit TestSky(double sign) : CDSky(one_band), sign_(sign) {
+    const CDSun sun{CDVector::fromAngles(50 * degree, 1), light(1)};
+    sky_.emplace(sun, CDRayleighSky::clearAir(one_band, 0.3));
+  }
+  void radiance(const CDVector& to_sky, CDSpectralVector<CDStokesVector>& out) const override {
+    sky_->radiance(to_sky, out);
+    out.plane(2)[0] *= sign_;
+  }
+  bool polarized() const override { return true; }
+  std::string description() const override { return "test"; }
+
+ private:
+  double sign_;
+  std::optional<CDRayleighSky> sky_;
+};
+
+/// Light towards a viewer from the thesis's grid of 90 directions, in the frame of the viewer's ray and the normal.
+CDStokesVector skySum(const CDSky& sky, const CDBRDFModel& brdf, const CDVector& normal, const CDVector& to_viewer) {
+  const CDSurfaceAxes axes(normal);
+  CDStokesVector sum(0, 0, 0, 0);
+  for (const CDSamplePoint& p : uniformGridSampling(18, 5, pi / 2)) {
+    const CDVector local = CDVector::fromAngles(p.zenith_rad, p.azimuth_rad), to_sky = axes.toWorld(local);
+    CDSpectralVector<CDStokesVector> in(one_band);
+    sky.radiance(to_sky, in);
+    const double theta = frameRotation(rayFrame(-to_sky, {0, 0, 1}), rayFrame(-to_sky, normal));
+    CDStokesVector turned = in[0];
+    turned.rotate(std::cos(2 * theta), std::sin(2 * theta));
+    const auto f = brdf.getBRDF(CDBRDFGeometry::fromDirections(local, axes.toLocal(to_viewer)));
+    sum += local.z * p.solid_angle_sr * (CDMuellerMatrix(f.at(0)) * turned);
+  }
+  return sum;
+}
+}  // namespace
+
+// 1e-5: single precision. The plate leans so far that the sky's frames and the plate's differ everywhere, and little enough
+// that all ninety directions are sky.
+TEST(CDRadiometryIdentity, PolarisedSkyIsTheSumOfItsDirections) {
+  const CDVector normal = normalized({0.3, -0.2, 1}), to_viewer = normalized({0.5, 0.4, 0.9});
+  const double tilt = std::acos(normal.z), towards = std::atan2(normal.y, normal.x);
+  const CDVector across{-std::sin(towards), std::cos(towards), 0};
+  CDWorld world = worldOf({{CDTransform::rotate(across, tilt), copper()}});
+  const auto sky = std::make_shared<TestSky>(1), wrong = std::make_shared<TestSky>(-1);
+  world.sky = sky;
+  const CDVector horizontal = rayFrame(to_viewer, normal).s;
+  const CDStokesVector found =
+      seen(world, {.sampling = CDSampling::grid, .rays = {91}}, looking({0, 0, 0}, to_viewer, horizontal));
+  const CDStokesVector expected = skySum(*sky, *copper(), normal, to_viewer);
+  EXPECT_LT(apart(found, expected), 1e-5 * expected.getScalar());
+  EXPECT_GT(std::abs(expected.getStokes(2)), 0.01 * expected.getScalar());
+  EXPECT_GT(std::abs(expected.getStokes(3)), 0.01 * expected.getScalar());
+  const CDStokesVector control = skySum(*wrong, *copper(), normal, to_viewer);
+  EXPECT_GT(apart(found, control), 1e-3 * expected.getScalar()) << "negative control: the other sign of S2";
 }

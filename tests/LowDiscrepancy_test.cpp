@@ -272,3 +272,16 @@ TEST(LowDiscrepancyInvariant, ErrorFallsFasterThanThatOfRandomNumbers) {
   EXPECT_LT(slope(sobolAverage), -1.2);
   EXPECT_NEAR(slope(randomAverage), -0.5, 0.2) << "negative control";
 }
+
+// A block of sixteen has the bits of sixteen single points, wherever it begins.
+TEST(LowDiscrepancyIdentity, SixteenPointsAreThePointsOneByOne) {
+  for (const std::uint32_t first : {0u, 16u, 1000u, 65530u, 4000000u}) {
+    const CDSobolPoints points(3, 1, first);
+    const CDSobolPoints::Block block = points.points(first);
+    for (std::uint32_t i = 0; i < CDSobolPoints::block; ++i)
+      for (std::size_t d = 0; d < CDSobolPoints::dimensions; ++d) {
+        EXPECT_EQ(block[d][i], points(first + i)[d]) << first + i;
+        EXPECT_NE(block[d][i], points(first + i + 1)[d]) << "negative control: the next point";
+      }
+  }
+}

@@ -1,47 +1,78 @@
-// What an error costs: error, time and their product for every sampling, beside a peer's.
+// What an error costs: error, time and their product for every sampling, and the time to a peer's error.
 #include "Sampling.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "thesis/OwnSampling.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr int side = 128, rays = 64;
+constexpr int side = 128;
+// 256 x 256 pixels are four times as many; two processors share the work
+constexpr double scale = 4 / 2.0;
 
-void print(CDSamplingTask task, const std::string& note) {
-  task.side = side, task.rays = {rays};
-  for (const CDSamplingRun& run : measureSamplings(task)) {
-    if (run.sampler == "reference") continue;
-    const double seconds = 4 * run.seconds;  // 256 x 256 pixels are four times as many
-    const auto& e = run.errors;
-    fmt::print("{:24} {:8.4f} {:8.4f} {:8.4f} {:8.4f} {:9.3f} {:10.4f}\n", run.sampler + note,
-               e[0], e[1], e[2], e[3], seconds, e[0] * seconds);
+/// Mitsuba 3.8, measured elsewhere on two cores: two reflections that see the sky, 64 paths.
+struct Peer {
+  const char* mode;
+  double error, seconds;
+};
+constexpr Peer one_band[] = {{"LLVM", 0.167, 2.1}, {"LLVM, sun weighted", 0.116, 2.1}, {"scalar", 0.167, 8.7}};
+constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.167, 64}, {"scalar, 100 bands", 0.167, 219}};
+
+std::vector<CDSamplingRun> measure(CDSamplingTask task) {
+  task.side = side;
+  std::vector<CDSamplingRun> runs;
+  for (CDSamplingRun& run : measureSamplings(task))
+    if (run.sampler != "reference") runs.push_back(std::move(run));
+  return runs;
+}
+
+void print(const std::vector<CDSamplingRun>& runs, const std::string& note) {
+  for (const CDSamplingRun& run : runs)
+    fmt::print("{:28} {:4} {:8.4f} {:8.4f} {:8.4f} {:8.4f} {:9.3f} {:10.4f}\n", run.sampler + note, run.rays,
+               run.errors[0], run.errors[1], run.errors[2], run.errors[3], scale * run.seconds,
+               run.errors[0] * scale * run.seconds);
+}
+
+/// Seconds to an error of S0: between neighbours a line on logarithmic axes, from the fewest rays on.
+double secondsTo(double error, const std::vector<CDSamplingRun>& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].errors[0] > error) continue;
+    if (i == 0) return scale * runs[0].seconds;
+    const CDSamplingRun &before = runs[i - 1], &after = runs[i];
+    const double t = std::log(before.errors[0] / error) / std::log(before.errors[0] / after.errors[0]);
+    return scale * before.seconds * std::pow(after.seconds / before.seconds, t);
+  }
+  return std::nan("");
+}
+
+template <std::size_t N>
+void compare(const Peer (&peers)[N], const std::vector<CDSamplingRun>& runs) {
+  for (const Peer& peer : peers) {
+    const double ours = secondsTo(peer.error, runs);
+    fmt::print("{:28}      {:8.3f} {:26} {:9.3f} {:10.4f}   ours {:.3f} s to this error: {:.0f} times faster\n",
+               peer.mode, peer.error, "", peer.seconds, peer.error * peer.seconds, ours, peer.seconds / ours);
   }
 }
 }  // namespace
 
 void printSamplings() {
   fmt::print(
-      "\nError x time: copper chunky bar, 1 polarised band, {} rays from the first surface, "
-      "256 x 256 pixels "
-      "(timed on {} x {})\n{:24} {:>8} {:>8} {:>8} {:>8} {:>9} {:>10}\n",
-      rays, side, side, "rms error / mean S0", "S0", "S1", "S2", "S3", "seconds", "S0 x s");
-  print({}, "");
-  print({.second = 2, .reference_rays = 512, .only = "sobol"}, ", sky twice");
-  print({.second = 2, .reference_rays = 256, .only = "sobol", .bands = 100}, ", 100 bands");
-  fmt::print(
-      "Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky, 64 "
-      "paths):\n");
-  for (const auto& [mode, error, seconds] : {std::tuple{"LLVM", 0.167, 2.1},
-                                             {"LLVM, sun weighted", 0.116, 2.1},
-                                             {"scalar", 0.167, 8.7},
-                                             {"LLVM, 100 bands", 0.167, 64.0},
-                                             {"scalar, 100 bands", 0.167, 219.0}})
-    fmt::print("{:24} {:8.3f} {:26} {:9.3f} {:10.4f}\n", mode, error, "", seconds,
-               error * seconds);
+      "\nError x time: copper chunky bar, polarised, 256 x 256 pixels (timed on {0} x {0}; processor time over two)\n"
+      "{1:28} {2:>4} {3:>8} {4:>8} {5:>8} {6:>8} {7:>9} {8:>10}\n",
+      side, "rms error / mean S0", "rays", "S0", "S1", "S2", "S3", "seconds", "S0 x s");
+  print(measure({}), "");
+  const std::vector<int> rays{2, 4, 8, 16, 32, 64};
+  const auto one = measure({.rays = rays, .second = 2, .reference_rays = 512, .only = "sobol"});
+  const auto hundred = measure({.rays = rays, .second = 2, .reference_rays = 256, .only = "sobol", .bands = 100});
+  print(one, ", sky twice");
+  print(hundred, ", 100 bands");
+  fmt::print("Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky, 64 paths):\n");
+  compare(one_band, one);
+  compare(hundred_bands, hundred);
 }

@@ -14,6 +14,7 @@
 #include "imaging/CDRadiometry.hpp"
 #include "matter/BRDFDiffuse.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "world/CDRayleighSky.hpp"
 
 using namespace malus;
 
@@ -162,12 +163,18 @@ struct Case {
   std::vector<int> rays;
   std::size_t step;  // one row in so many is rendered
   bool polarized = true, one_by_one = false;
+  bool clear_sky = false;  // a Rayleigh sky, which the bare loops do not know: they render the uniform one
 };
 
 void measure(const Case& c) {
   const auto pair = makePair(c.shape, c.bands, c.polarized);
   if (c.one_by_one)
     for (CDMaterial& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
+  if (c.clear_sky) {
+    const CDSun sun{pair->world.sun->to_sun, CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0))};
+    const auto sky = std::make_shared<CDRayleighSky>(sun, CDRayleighSky::clearAir(pair->world.grid, 0.3));
+    pair->world.sky = sky, pair->world.sun = sky->sunAtGround();
+  }
   const CDRadiometry radiometry(pair->world, pair->tracer, {.sampling = CDSampling::gridRotated, .rays = c.rays});
   std::vector<double> out(pixels * 4 * c.bands);
   std::vector<float> bare_out(pixels * (pixels / c.step) * 4 * c.bands);
@@ -187,7 +194,8 @@ void measure(const Case& c) {
     return t[t.size() / 2];
   };
   const double scale = 1e3 * double(c.step), a = median(product) * scale, b = median(bare) * scale;
-  fmt::print("{:<48} {:>9.0f} {:>9.0f} {:>7.2f}   {:+.2f} %\n", c.name, a, b, a / b, 100 * (sum / bare_sum - 1));
+  const std::string difference = c.clear_sky ? "another sky" : fmt::format("{:+.2f} %", 100 * (sum / bare_sum - 1));
+  fmt::print("{:<48} {:>9.0f} {:>9.0f} {:>7.2f}   {}\n", c.name, a, b, a / b, difference);
 }
 }  // namespace
 
@@ -207,6 +215,8 @@ int main(int argc, char** argv) {
   run({"(c) 91 rays, 100 bands", bar, 100, {91}, 16});
   run({"(c) 91 rays, 100 bands, unpolarised", bar, 100, {91}, 16, false});
   run({"(c) 91 rays, 400 bands", bar, 400, {91}, 32});
+  run({"(c) 91 rays, 1 band, Rayleigh sky", bar, 1, {91}, 8, true, false, true});
+  run({"(c) 91 rays, 100 bands, Rayleigh sky", bar, 100, {91}, 32, true, false, true});
   run({"(d) a million triangles, 91 rays, 1 band", waves(710), 1, {91}, 16});
   return 0;
 }
