@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
+#include <sstream>
 
 #include "Program.hpp"
 #include "imaging/CDImage.hpp"
@@ -35,6 +38,42 @@ TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
   EXPECT_TRUE(std::filesystem::exists(scratch / "x.550.rgb.png"));
   EXPECT_EQ(malusIn(scratch.path, "products x.img --all --out all").code, 0);
   EXPECT_TRUE(std::filesystem::exists(scratch / "all/x.450.S3.png"));
+}
+
+TEST(CommandProductsIdentity, BandsWithoutAHarmlessNameGetTheirNumber) {
+  const Scratch scratch;
+  cubeIn(scratch.path);
+  std::string text = contents(scratch / "x.img.hdr");
+  text.replace(text.find("S0 450"), 6, "S0");
+  text.replace(text.find("S0 550"), 6, "S0 ../up");
+  put(scratch / "x.img.hdr", text);
+  const Outcome outcome = malusIn(scratch.path, "products x.img --all --out made");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(scratch / "made/x.band1.DoLP.png"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "made/x.band2.DoLP.png"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "made/x.650.DoLP.png"));
+}
+
+TEST(CommandProductsIdentity, InfoCountsWhatIsNoNumber) {
+  const Scratch scratch;
+  const auto bands = CDSpectralGrid::make({450});
+  CDCubeWriter writer(scratch / "y.img", stokesHeader(2, 1, *bands, "W m^-2 sr^-1 nm^-1"));
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  writer.write({0, 0, 2, 1}, std::vector<float>{5, none, none, 4, 7, 3, none, 4});
+  writer.finish();
+  const std::string out = malusIn(scratch.path, "info y.img").out;
+  const auto line = [&](const std::string& channel) {
+    const std::size_t at = out.find(channel);
+    return at == std::string::npos ? "" : out.substr(at, out.find('\n', at) - at);
+  };
+  const auto words = [](const std::string& text) {
+    std::istringstream stream(text);
+    return std::vector<std::string>(std::istream_iterator<std::string>(stream), {});
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(words(line("S0 450")), (Words{"S0", "450", "5", "6", "7", "0"})) << out;
+  EXPECT_EQ(words(line("S1 450")), (Words{"S1", "450", "3", "3", "3", "1"})) << out;
+  EXPECT_EQ(words(line("S2 450")), (Words{"S2", "450", "-", "-", "-", "2"})) << out;
 }
 
 TEST(CommandProductsIdentity, InfoSaysWhatIsThere) {
