@@ -118,6 +118,23 @@ TEST(CDMaterialIdentity, BroadBandsSeeTheAverageOfTheStraightLines) {
   EXPECT_NEAR(tent[0], 0.75, rounding);  // the mean of 0.5 and 1 on both sides
 }
 
+// A rectangular band of 0.5 um to 1 mm over n = 1.5 + 0.004 / um^2 has the mean of that formula,
+// 1.5 + 0.004 (1 / 0.5 - 1 / 1000) / (1000 - 0.5). Ten thousand samples, 0.1 um apart, are trapezoids
+// whose sum is wrong by 0.1^2 / 12 times the slope 16 at the blue end, 0.014 of 999.5.
+TEST(CDMaterialIdentity, VeryBroadBandsOfAFormulaAreAveragedToo) {
+  const Scratch scratch;
+  put(scratch / "x.yml",
+      "DATA:\n  - type: formula 5\n    wavelength_range: 0.5 1000\n    coefficients: 1.5 0.004 "
+      "-2\n"
+      "  - type: tabulated k\n    data: |\n      0.5 0\n      1000 0\n");
+  const auto broad = CDSpectralGrid::make(std::vector{
+      CDSpectralLocation(CDSpectralPoint(500250), CDBandResponse::rectangular(999500))});
+  const double n = readOpticalConstants(scratch / "x.yml", broad).n[0];
+  const double mean = 1.5 + 0.004 * (1 / 0.5 - 1 / 1000.0) / 999.5;
+  EXPECT_NEAR(n, mean, 0.004 * 2e-5);
+  EXPECT_GT(std::abs(n - 1.5), 0.004 * 2e-5);  // the control: the infrared end alone
+}
+
 TEST(CDMaterialIdentity, EndsOfATableAreInside) {
   const auto ends =
       readOpticalConstants("scenes/data/aluminium-rakic.yml", bands({364.66, 815.69}));

@@ -86,6 +86,11 @@ TEST(CDSunIdentity, CompassAnglesAndVectors) {
     EXPECT_NEAR(compassAzimuth_rad(compassDirection(0.4, azimuth)), azimuth, 1e-15);
   EXPECT_FALSE(
       near(compassAzimuth_rad(compassDirection(0.4, 2.0)), 2.1, 1e-15));  // negative control
+  // the seam in the north, and the zenith with zeros of either sign
+  EXPECT_EQ(compassAzimuth_rad({-1e-300, 1, 0}), 0);
+  EXPECT_LT(compassAzimuth_rad({-1e-12, 1, 0}), 2 * std::numbers::pi);
+  EXPECT_EQ(compassAzimuth_rad({0, -0.0, 1}), 0);
+  EXPECT_EQ(compassAzimuth_rad({-0.0, -0.0, 1}), 0);
 }
 
 TEST(CDSunIdentity, MomentsInTwoZonesAreOne) {

@@ -1,0 +1,123 @@
+// The parts of a world, and what must hold between them (nw/world/CDWorld.nw).
+#include "world/CDWorld.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "imaging/CDRadiometry.hpp"
+#include "light/CDError.hpp"
+#include "matter/BRDFDiffuse.hpp"
+
+using namespace malus;
+using std::numbers::pi;
+
+namespace {
+constexpr double rounding = 1e-14;  // a dozen operations on numbers below one
+
+// the listing of the chapter
+CDWorld smallWorld() {
+  CDWorld world;
+  world.grid = CDSpectralGrid::make({550.0});
+  CDGeometryBuilder builder;
+  builder.addGround(0, "soil", "ground");
+  world.geometry = std::move(builder).build();
+  const CDSpectralVector<double> reflectance(world.grid, 0.5);
+  world.materials = {{"soil", std::make_shared<BRDFDiffuse>(reflectance)}};
+  world.sun = CDSun{compassDirection(pi / 3, pi), {world.grid, CDStokesVector(2.0)}};
+  world.sky = blackSky(world.grid);
+  return world;
+}
+
+double seenFrom(const CDWorld& world, const CDVector& eye) {
+  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), {});
+  const CDRadiometry::Ray ray{eye, normalized(-eye), {0, 1, 0}, 0, 0, 0};
+  std::array<double, 4> out{};
+  radiometry.radiance({&ray, 1}, out);
+  return out[0];
+}
+
+// What check() says about a small world with one part spoiled; "" if nothing.
+std::string complaint(const std::function<void(CDWorld&)>& spoil) {
+  CDWorld world = smallWorld();
+  world.check();
+  spoil(world);
+  try {
+    world.check();
+  } catch (const CDMathError& error) {
+    return error.what();
+  } catch (const CDGridError& error) {
+    return error.what();
+  }
+  return "";
+}
+bool names(const std::string& sentence, const std::string& part) {
+  return sentence.find(part) != std::string::npos;
+}
+CDSpectralGridPtr otherGrid() { return CDSpectralGrid::make({650.0}); }
+}  // namespace
+
+TEST(CDWorldIdentity, TheSmallWorldLooksAsTheChapterSays) {
+  CDWorld world = smallWorld();
+  for (const CDVector& eye : {CDVector{0, 0, 1}, {300, 0, 1000}, {-0.2, 0.7, 0.1}})
+    EXPECT_NEAR(seenFrom(world, eye), 1 / (2 * pi), rounding);
+  world.sun->to_sun = compassDirection(pi / 3 + 1e-6, pi);  // the control: a sun a little lower
+  EXPECT_GT(std::abs(seenFrom(world, {0, 0, 1}) - 1 / (2 * pi)), rounding);
+}
+
+TEST(CDWorldIdentity, PartsThatAreMissingAreNamed) {
+  EXPECT_EQ(complaint([](CDWorld&) {}), "");  // the control
+  EXPECT_EQ(complaint([](CDWorld& world) { world.sun.reset(); }), "");
+  EXPECT_TRUE(names(complaint([](CDWorld& world) { world.grid = nullptr; }), "spectral grid"));
+  EXPECT_TRUE(names(complaint([](CDWorld& world) { world.sky = nullptr; }), "a black one"));
+  EXPECT_TRUE(names(complaint([](CDWorld& world) { world.materials.clear(); }),
+                    "names 1 materials, the world has 0"));
+  EXPECT_TRUE(
+      names(complaint([](CDWorld& world) { world.materials.push_back(world.materials[0]); }),
+            "names 1 materials, the world has 2"));
+  EXPECT_TRUE(names(complaint([](CDWorld& world) { world.materials[0].brdf = nullptr; }),
+                    "no BRDF for the material soil"));
+}
+
+TEST(CDWorldIdentity, PartsOnAnotherGridAreRefused) {
+  const std::string grids = "different grids";
+  EXPECT_TRUE(names(complaint([](CDWorld& world) { world.grid = otherGrid(); }), grids));
+  EXPECT_TRUE(
+      names(complaint([](CDWorld& world) { world.sky = blackSky(otherGrid()); }), grids));
+  EXPECT_TRUE(names(complaint([](CDWorld& world) {
+                      world.sun->irradiance = {otherGrid(), CDStokesVector(2.0)};
+                    }),
+                    grids));
+  EXPECT_TRUE(names(complaint([](CDWorld& world) {
+                      world.materials[0].brdf = std::make_shared<BRDFDiffuse>(
+                          CDSpectralVector<double>(otherGrid(), 0.5));
+                    }),
+                    grids));
+}
+
+TEST(CDWorldIdentity, ASunThatIsNotPhysicalIsRefused) {
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  const auto towards = [](const CDVector& to_sun) {
+    return complaint([&](CDWorld& world) { world.sun->to_sun = to_sun; });
+  };
+  EXPECT_EQ(towards({0.6, 0, 0.8}), "");  // the control
+  for (const CDVector& bad : {CDVector{0, 0, 0}, {0.6, 0, 0.81}, {0, 0, not_a_number}})
+    EXPECT_TRUE(names(towards(bad), "not a unit vector"));
+  const auto wide = [](double half_angle_rad) {
+    return complaint([&](CDWorld& world) { world.sun->half_angle_rad = half_angle_rad; });
+  };
+  EXPECT_EQ(wide(0), "");  // a point
+  for (const double bad : {-0.001, pi / 2, not_a_number})
+    EXPECT_TRUE(names(wide(bad), "half angle"));
+  const auto bright = [](const CDStokesVector& light) {
+    return complaint([&](CDWorld& world) { world.sun->irradiance[0] = light; });
+  };
+  EXPECT_EQ(bright(CDStokesVector(2, 0, 0, -2)), "");  // behind a polariser
+  for (const CDStokesVector& bad :
+       {CDStokesVector(-1), CDStokesVector(not_a_number), CDStokesVector(2, 1.5, 1.5, 0)})
+    EXPECT_TRUE(names(bright(bad), "at 550 nm is not physical"));
+}
