@@ -30,8 +30,8 @@ CDMuellerMatrix muellerOf(const CDScatteringMatrix& f) {
 }
 
 // Light scattered from one direction into another, in the axes of rayFrame(k, +z), by vectors.
-CDStokesVector scattered(const CDScatterer& scatterer, CDStokesVector light, const CDVector& from,
-                         const CDVector& to) {
+CDStokesVector scattered(const CDScatterer& scatterer, CDStokesVector light,
+                         const CDVector& from, const CDVector& to) {
   const CDVector up{0, 0, 1}, s = normalized(cross(from, to));
   const CDRayFrame in{s, cross(from, s), from}, out{s, cross(to, s), to};
   light.rotate(frameRotation(rayFrame(from, up), in));
@@ -68,8 +68,9 @@ TEST(CDLayeredLightInvariant, AgreesWithTheCoherencyTensor) {
       EXPECT_LT(apart(whole.up(v, phi * degree), exact.up(views[v], azimuth)), 1e-7)
           << v << ' ' << phi;
       for (std::size_t k = 0; k < depths.size(); ++k) {
-        EXPECT_LT(apart(fine.down(v, phi * degree, k), exact.down(views[v], azimuth, depths[k])),
-                  1e-7);
+        EXPECT_LT(
+            apart(fine.down(v, phi * degree, k), exact.down(views[v], azimuth, depths[k])),
+            1e-7);
         EXPECT_LT(apart(fine.up(v, phi * degree, k), exact.up(views[v], azimuth, depths[k])),
                   1e-7);
       }
@@ -99,9 +100,10 @@ TEST(CDLayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
   const std::vector<double> mu{0.1, 0.2, 0.3, 0.4, 0.5,
                                0.6, 0.7, 0.8, 0.9, std::cos(1e-4 * degree)};
   const std::vector<double> depths{0.0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0};
-  const char* const names[]{"tau_0",   "tau_0.125", "tau_0.25", "tau_0.5",
+  const char* const names[]{"tau_0",    "tau_0.125", "tau_0.25", "tau_0.5",
                             "tau_0.75", "tau_0.875", "tau_1"};
-  const CDLayeredLight light({{{spheroids(), 1.0, 0.973527}}}, 0.6, 0, pi, mu, {32, -1}, depths);
+  const CDLayeredLight light({{{spheroids(), 1.0, 0.973527}}}, 0.6, 0, pi, mu, {32, -1},
+                             depths);
   // his Q is ll - rr, and his azimuth goes the other way round: a mirror changes the signs of U and V
   const double signs[]{1, -1, -1, -1};
   int compared = 0, seen = 0;
@@ -112,11 +114,13 @@ TEST(CDLayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
         static_cast<int>(std::string("IQUV").find(printed.cell(row, "component")));
     const auto view = static_cast<std::size_t>(std::lround(std::abs(signed_mu) * 10)) - 1;
     for (std::size_t k = 0; k < depths.size(); ++k) {
-      const CDStokesVector value = signed_mu < 0 ? light.up(view, phi * degree, k)
-                                                 : light.down(view, phi * degree, k);
+      const CDStokesVector value =
+          signed_mu < 0 ? light.up(view, phi * degree, k) : light.down(view, phi * degree, k);
       const double theirs = printed.number(row, names[k]);
       const double off = value.getStokes(component) * signs[component] - theirs;
-      const double half = theirs == 0 ? 1e-9 : 0.51 * std::pow(10, std::floor(std::log10(std::abs(theirs))) - 5);
+      const double half =
+          theirs == 0 ? 1e-9
+                      : 0.51 * std::pow(10, std::floor(std::log10(std::abs(theirs))) - 5);
       worst[component] = std::max(worst[component], std::abs(off));
       // the printed digits, and what the streams leave of ours and of theirs
       EXPECT_LT(std::abs(off), half + 3e-8)
@@ -131,7 +135,8 @@ TEST(CDLayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
   // control: without b2 there is no V
   auto terms = spheroids().terms();
   for (auto& term : terms) term.beta2 = 0;
-  const CDLayeredLight without({{{CDScatterer(terms), 1.0, 0.973527}}}, 0.6, 0, pi, mu, {20, -1});
+  const CDLayeredLight without({{{CDScatterer(terms), 1.0, 0.973527}}}, 0.6, 0, pi, mu,
+                               {20, -1});
   EXPECT_EQ(without.up(0, 1).getStokes(3), 0);
   EXPECT_NE(light.up(0, 1).getStokes(3), 0);
   // and the other sign of b1 is the other polarisation
@@ -147,9 +152,9 @@ TEST(CDLayeredLightIdentity, AThinLayerScattersOnce) {
   for (std::size_t v = 0; v + 1 < views.size(); ++v)
     for (const double phi : {0.3, 1.5, 2.8, 4.0})
       for (const int way : {-1, 1}) {
-        const CDStokesVector once =
-            scattered(spheroids(), CDStokesVector(1, 0, 0, 0), travel(-sun, 0), travel(way * views[v], phi)) *
-            (depth / (4 * pi * views[v]));
+        const CDStokesVector once = scattered(spheroids(), CDStokesVector(1, 0, 0, 0),
+                                              travel(-sun, 0), travel(way * views[v], phi)) *
+                                    (depth / (4 * pi * views[v]));
         const CDStokesVector ours = way < 0 ? light.down(v, phi) : light.up(v, phi);
         EXPECT_LT(apart(ours, once), 20 * depth * once.getScalar());
         const CDStokesVector mirrored = way < 0 ? light.down(v, -phi) : light.up(v, -phi);
@@ -180,7 +185,8 @@ TEST(CDLayeredLightInvariant, TwoScatteringsMakeCircularPolarisation) {
                   : (std::exp(-a * t2) - std::exp(-a * depth - b * (depth - t2))) * b / (a + b);
         path += inner * std::exp(-t2 / view) / view * depth / slices;
       }
-      const CDStokesVector once = scattered(matter, CDStokesVector(1, 0, 0, 0), travel(-sun, 0), between);
+      const CDStokesVector once =
+          scattered(matter, CDStokesVector(1, 0, 0, 0), travel(-sun, 0), between);
       sum += scattered(matter, once, between, travel(view, phi)) *
              (path * 4 * pi / (zones * sectors) / (16 * pi * pi));
     }
@@ -212,6 +218,20 @@ TEST(CDLayeredLightInvariant, EnergyIsBalanced) {
     const double absorbed = (1 - albedo) * (light.directFlux() + light.diffuseDown());
     EXPECT_NEAR(light.diffuseUp() + absorbed, 0.4, 1e-8) << albedo;
     EXPECT_GT(std::abs(light.diffuseUp() * 1.0001 + absorbed - 0.4), 1e-6);  // control
+  }
+}
+
+// Helmholtz: sun and viewer exchanged. The reflected radiance is the sun's cosine times a symmetric function.
+TEST(CDLayeredLightInvariant, SunAndViewerMayBeExchanged) {
+  const std::vector<CDAirLayer> air{{{rayleighScatterer(0.03), 0.2}},
+                                    {{spheroids(), 0.4, 0.9}}};
+  const CDLayeredLight there(air, 0.8, 0.3, 1, {0.35}), back(air, 0.35, 0.3, 1, {0.8});
+  for (const double phi : {0.2, 1.3, 2.9}) {
+    EXPECT_NEAR(there.up(0, phi).getScalar() / 0.8, back.up(0, phi).getScalar() / 0.35, 1e-7)
+        << phi;
+    EXPECT_GT(
+        std::abs(there.up(0, phi).getScalar() / 0.8 - back.up(0, phi + 0.1).getScalar() / 0.35),
+        1e-4);  // control
   }
 }
 

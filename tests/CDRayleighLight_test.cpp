@@ -93,16 +93,19 @@ TEST(CDRayleighLightPublished, IprtCaseA1) {
     const auto number = [&](const char* column) { return table.number(row, column); };
     const bool up = table.cell(row, "dir") == "UP";
     const auto light = [&](double rho, double sign) {
-      const CDRayleighLight made(CDRayleighAtmosphere(0.5, rho), std::cos(number("sza") * degree), 0, 1);
-      const Azimuth azimuth = Azimuth::fromRadians(sign * (number("vaa") - number("saa")) * degree);
+      const CDRayleighLight made(CDRayleighAtmosphere(0.5, rho),
+                                 std::cos(number("sza") * degree), 0, 1);
+      const Azimuth azimuth =
+          Azimuth::fromRadians(sign * (number("vaa") - number("saa")) * degree);
       const double mu = std::min(1.0, std::abs(std::cos(number("vza") * degree)));
-      return convertSky(up ? made.up(mu, azimuth) : made.down(mu, azimuth), CDSkyConvention::malus,
-                        CDSkyConvention::iprt);
+      return convertSky(up ? made.up(mu, azimuth) : made.down(mu, azimuth),
+                        CDSkyConvention::malus, CDSkyConvention::iprt);
     };
     const char* const names[]{"I", "Q", "U"};
     const auto off = [&](const CDStokesVector& ours) {
       double most = 0;
-      for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(ours.getStokes(k) - number(names[k])));
+      for (int k = 0; k < 3; ++k)
+        most = std::max(most, std::abs(ours.getStokes(k) - number(names[k])));
       return most / number("I");
     };
     EXPECT_LT(off(light(number("rho_depol"), 1)), 1.3e-6) << row;
@@ -111,6 +114,27 @@ TEST(CDRayleighLightPublished, IprtCaseA1) {
       EXPECT_GT(off(light(number("rho_depol"), -1)), 1e-2) << row;
     }
   }
+}
+
+// Kokhanovsky et al. 2010, molecular case, down to 89 degrees: six digits are promised, seven are printed.
+TEST(CDRayleighLightPublished, KokhanovskysMolecularLayer) {
+  const CDTable table = CDTable::read("validation/printed/kokhanovsky2010.csv");
+  const CDRayleighLight light(CDRayleighAtmosphere(0.3262), 0.5, 0, 2 * pi);  // pi / mu0
+  int with_u = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double mu = std::cos(table.number(row, "vza_deg") * degree);
+    const Azimuth azimuth = Azimuth::fromRadians(table.number(row, "phi_deg") * degree);
+    const CDStokesVector ours =
+        table.cell(row, "dir") == "UP" ? light.up(mu, azimuth) : light.down(mu, azimuth);
+    const double I = table.number(row, "I"), tolerance = 1e-6 * I;
+    EXPECT_NEAR(ours.getStokes(0), I, tolerance) << row;
+    EXPECT_NEAR(ours.getStokes(1), table.number(row, "minus_Q"), tolerance) << row;
+    EXPECT_GT(std::abs(ours.getStokes(0) * 1.00001 - I), tolerance) << row;  // control
+    if (table.cell(row, "U").empty()) continue;
+    EXPECT_NEAR(ours.getStokes(2), table.number(row, "U"), tolerance) << row;
+    ++with_u;
+  }
+  EXPECT_EQ(with_u, 6);
 }
 
 // The two ways of integrating along the line must agree: they share nothing but the solution's nodes.

@@ -32,8 +32,11 @@ std::string questions(const CDTable& printed) {
   return text;
 }
 
-const std::string spheroids =
-    "'" + (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() / "scenes/data/aerosol-spheroids.csv").string() + "'";
+const std::string spheroids = "'" +
+                              (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
+                               "scenes/data/aerosol-spheroids.csv")
+                                  .string() +
+                              "'";
 }  // namespace
 
 // Siewert 2000, problem IIA, through files: half a unit of the sixth digit, and 1e-6 for flat lines of sight.
@@ -41,26 +44,32 @@ TEST(CommandSkyPublished, AFileOfAerosolQuestions) {
   const CDTable printed = CDTable::read("validation/printed/siewert2000.csv");
   const Scratch scratch;
   std::string text = "tau,aerosol_tau,aerosol_albedo,mu0,mu,phi_deg,direction,tau_obs\n";
-  const std::vector<std::pair<std::string, std::string>> depths{{"tau_0", "0"}, {"tau_0.25", "0.25"}, {"tau_1", "1"}};
-  struct Row { double value; char component; };
+  const std::vector<std::pair<std::string, std::string>> depths{
+      {"tau_0", "0"}, {"tau_0.25", "0.25"}, {"tau_1", "1"}};
+  struct Row {
+    double value;
+    char component;
+  };
   std::vector<Row> wanted;
   for (std::size_t row = 0; row < printed.rows(); ++row) {
     const double mu = printed.number(row, "mu");
     if (std::abs(mu) == 1) continue;  // computed a little beside the vertical
     for (const auto& [column, depth] : depths) {
-      text += fmt::format("0,1,0.973527,0.6,{},{},{},{}\n", std::abs(mu), -printed.number(row, "phi_deg"),
-                          mu < 0 ? "up" : "down", depth);
+      text += fmt::format("0,1,0.973527,0.6,{},{},{},{}\n", std::abs(mu),
+                          -printed.number(row, "phi_deg"), mu < 0 ? "up" : "down", depth);
       wanted.push_back({printed.number(row, column), printed.cell(row, "component")[0]});
     }
   }
   put(scratch / "questions.csv", text);
-  const Outcome outcome = malusIn(scratch.path, "sky --points questions.csv --convention iprt --aerosol " + spheroids);
+  const Outcome outcome = malusIn(
+      scratch.path, "sky --points questions.csv --convention iprt --aerosol " + spheroids);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const CDTable answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), wanted.size());
   int with_v = 0;
   for (std::size_t row = 0; row < wanted.size(); ++row) {
-    const double ours = answer.number(row, std::string(1, wanted[row].component)), theirs = wanted[row].value;
+    const double ours = answer.number(row, std::string(1, wanted[row].component)),
+                 theirs = wanted[row].value;
     EXPECT_NEAR(ours, theirs, 1e-6 + 5e-6 * std::abs(theirs)) << row;
     with_v += wanted[row].component == 'V' && std::abs(theirs) > 1e-5;
     if (std::abs(theirs) > 1e-3) {
@@ -74,13 +83,19 @@ TEST(CommandSkyInvariant, FluxesBalance) {
   const Scratch scratch;
   for (const std::string albedo : {"0", "0.3", "1"}) {
     const CDTable clear = tableOf(
-        malusIn(scratch.path, "sky --tau 0.5 --depolarization 0.03 --mu0 0.6 --fluxes --albedo " + albedo).out);
+        malusIn(scratch.path,
+                "sky --tau 0.5 --depolarization 0.03 --mu0 0.6 --fluxes --albedo " + albedo)
+            .out);
     EXPECT_NEAR(clear.number(0, "flux_in"), 0.6 * std::numbers::pi, 1e-15);
     EXPECT_NEAR(clear.number(0, "flux_air"), 0, 1e-10);
-    EXPECT_NEAR(clear.number(0, "flux_direct"), 0.6 * std::numbers::pi * std::exp(-0.5 / 0.6), 1e-14);
+    EXPECT_NEAR(clear.number(0, "flux_direct"), 0.6 * std::numbers::pi * std::exp(-0.5 / 0.6),
+                1e-14);
     EXPECT_GT(clear.number(0, "flux_down"), 0.1);
-    const CDTable dusty = tableOf(malusIn(scratch.path, "sky --tau 0.5 --mu0 0.6 --fluxes --aerosol-tau 0.2 --aerosol-albedo 0.9 --aerosol " +
-                                                            spheroids + " --albedo " + albedo).out);
+    const CDTable dusty = tableOf(malusIn(scratch.path,
+                                          "sky --tau 0.5 --mu0 0.6 --fluxes --aerosol-tau 0.2 "
+                                          "--aerosol-albedo 0.9 --aerosol " +
+                                              spheroids + " --albedo " + albedo)
+                                      .out);
     EXPECT_GT(dusty.number(0, "flux_air"), 0.01);  // control: what absorbs does not balance
   }
 }
@@ -88,21 +103,26 @@ TEST(CommandSkyInvariant, FluxesBalance) {
 // Path radiance and transmission: what they say together is what is seen, and over black ground there is only path.
 TEST(CommandSkyIdentity, PathAndGroundAddUp) {
   const Scratch scratch;
-  const std::string question = "sky --tau 0.3 --mu0 0.6 --mu 0.4 --phi 50 --direction up --tau-obs 0.1 --path ";
+  const std::string question =
+      "sky --tau 0.3 --mu0 0.6 --mu 0.4 --phi 50 --direction up --tau-obs 0.1 --path ";
   const CDTable grey = tableOf(malusIn(scratch.path, question + "--albedo 0.4").out),
                 black = tableOf(malusIn(scratch.path, question).out);
   EXPECT_NEAR(grey.number(0, "transmission"), std::exp(-0.2 / 0.4), 1e-15);
-  EXPECT_NEAR(grey.number(0, "path_I") + grey.number(0, "transmission") * grey.number(0, "ground_I"), grey.number(0, "I"), 1e-15);
+  EXPECT_NEAR(
+      grey.number(0, "path_I") + grey.number(0, "transmission") * grey.number(0, "ground_I"),
+      grey.number(0, "I"), 1e-15);
   EXPECT_EQ(black.number(0, "ground_I"), 0);
   EXPECT_EQ(black.number(0, "path_I"), black.number(0, "I"));
-  EXPECT_GT(grey.number(0, "path_I"), black.number(0, "path_I"));  // the ground lights the air, too
+  EXPECT_GT(grey.number(0, "path_I"),
+            black.number(0, "path_I"));  // the ground lights the air, too
   EXPECT_NE(grey.number(0, "path_U"), 0);
 }
 
 // The neutral points of the picture are zeros of Q in the meridian that malus sky answers for directions.
 TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
   const Scratch scratch;
-  for (const std::string& aerosol : {std::string(), " --aerosol-tau 0.05 --aerosol " + spheroids}) {
+  for (const std::string& aerosol :
+       {std::string(), " --aerosol-tau 0.05 --aerosol " + spheroids}) {
     const std::string air = "sky --wavelength-nm 450 --mu0 0.17" + aerosol;
     const Outcome outcome = malusIn(scratch.path, air + " --picture dome");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -114,13 +134,18 @@ TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
     EXPECT_NE(std::find(names.begin(), names.end(), "Arago"), names.end());
     for (std::size_t row = 0; row < points.rows(); ++row) {
       const auto at = [&](double zenith_deg) {
-        const CDTable one = tableOf(malusIn(scratch.path, air + fmt::format(" --mu {} --phi {}", std::cos(zenith_deg * std::numbers::pi / 180),
-                                                          points.cell(row, "phi_deg"))).out);
+        const CDTable one =
+            tableOf(malusIn(scratch.path,
+                            air + fmt::format(" --mu {} --phi {}",
+                                              std::cos(zenith_deg * std::numbers::pi / 180),
+                                              points.cell(row, "phi_deg")))
+                        .out);
         return one.number(0, "Q") / one.number(0, "I");
       };
       const double zenith = points.number(row, "zenith_deg");
       if (zenith > 88) continue;
-      EXPECT_LT(std::abs(at(zenith)), 2e-4) << points.cell(row, "name");  // linear between quarters of a degree
+      EXPECT_LT(std::abs(at(zenith)), 2e-4)
+          << points.cell(row, "name");  // linear between quarters of a degree
       EXPECT_LT(at(zenith - 1) * at(zenith + 1), 0) << points.cell(row, "name");
     }
   }
@@ -216,7 +241,8 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
   put(scratch / "bad.csv", "tau,mu0,mu\n0.1,0.5,0.5\n0.1,0.5,0\n");
   put(scratch / "column.csv", "tau,albdo,mu0,mu\n0.1,0.2,0.5,0.5\n");
   put(scratch / "answer.csv", "tau,mu0,mu,I\n0.1,0.5,0.5,1\n");
-  put(scratch / "greek.csv", "# convention: dehaan\nl,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,0,0,0\n");
+  put(scratch / "greek.csv",
+      "# convention: dehaan\nl,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,0,0,0\n");
   put(scratch / "good.csv", "tau,mu0,mu\n0.1,0.5,0.5\n");
   for (const std::string bad :
        {"",
@@ -261,7 +287,8 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
         "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol greek.csv",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol greek.csv --aerosol-tau -1",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol greek.csv --aerosol-tau 0.1 --aerosol-albedo 2",
-        "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol greek.csv --aerosol-tau 0.1 --aerosol-place beside"}) {
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol greek.csv --aerosol-tau 0.1 --aerosol-place "
+        "beside"}) {
     const Outcome outcome = malusIn(scratch.path, std::string("sky ") + bad);
     EXPECT_EQ(outcome.code, 2) << bad;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n'

@@ -22,21 +22,27 @@ constexpr double pi = std::numbers::pi, degree = pi / 180;
 json mirrorScene(double view_deg, double azimuth_deg, const json& sky) {
   const CDVector to_camera = compassDirection(view_deg * degree, azimuth_deg * degree);
   const CDVector at = to_camera * 100.0;
-  return {{"malus", 1},
-          {"bands", {{"wavelength_nm", {450, 650}}}},
-          {"geometry", {{{"ground", {{"z_m", 0}, {"material", "mirror"}}}}}},
-          {"materials",
-           {{"mirror", {{"model", "torrance-sparrow"}, {"n", 1}, {"k", 10000}, {"sigma", 0.005}}}}},
-          {"sun", {{"zenith_deg", 50}, {"azimuth_deg", 120}, {"irradiance_W_m2_nm", 1}}},
-          {"sky", sky},
-          {"sensor", {{"kind", "framing"}, {"width", 1}, {"height", 1}, {"field_of_view_deg", 0.01}}},
-          {"platform",
-           {{"path", "fixed"}, {"position_m", {at.x, at.y, at.z}}, {"look_at_m", {0, 0, 0}}, {"up", {0, 0, 1}}}},
-          {"radiometry", {{"sampling", "importance"}, {"rays", {4096}}, {"seed", 3}}}};
+  return {
+      {"malus", 1},
+      {"bands", {{"wavelength_nm", {450, 650}}}},
+      {"geometry", {{{"ground", {{"z_m", 0}, {"material", "mirror"}}}}}},
+      {"materials",
+       {{"mirror", {{"model", "torrance-sparrow"}, {"n", 1}, {"k", 10000}, {"sigma", 0.005}}}}},
+      {"sun", {{"zenith_deg", 50}, {"azimuth_deg", 120}, {"irradiance_W_m2_nm", 1}}},
+      {"sky", sky},
+      {"sensor",
+       {{"kind", "framing"}, {"width", 1}, {"height", 1}, {"field_of_view_deg", 0.01}}},
+      {"platform",
+       {{"path", "fixed"},
+        {"position_m", {at.x, at.y, at.z}},
+        {"look_at_m", {0, 0, 0}},
+        {"up", {0, 0, 1}}}},
+      {"radiometry", {{"sampling", "importance"}, {"rays", {4096}}, {"seed", 3}}}};
 }
 const json rayleigh{{"model", "rayleigh"}, {"albedo", 0.2}};
 
-CDStokesVector pixel(const json& scene, std::size_t band, const std::filesystem::path& at = ".") {
+CDStokesVector pixel(const json& scene, std::size_t band,
+                     const std::filesystem::path& at = ".") {
   const CDFrame frame = renderScene(readSceneText(scene.dump(), "mirror.json", at));
   const double* s = frame.at(0, 0, band);
   return {s[0], s[1], s[2], s[3]};
@@ -51,12 +57,15 @@ CDStokesVector mirrored(const CDStokesVector& s) {
   return {s.getStokes(0), s.getStokes(1), -s.getStokes(2), -s.getStokes(3)};
 }
 // The exact sky where the mirror looks, without table, scene or renderer.
-CDStokesVector exact(double view_deg, double azimuth_deg, double nm, double sun_azimuth_deg = 120) {
-  const CDRayleighLight light(CDRayleighAtmosphere(rayleighOpticalDepth(nm), rayleighDepolarization(nm)),
-                              std::cos(50 * degree), 0.2, 1);
+CDStokesVector exact(double view_deg, double azimuth_deg, double nm,
+                     double sun_azimuth_deg = 120) {
+  const CDRayleighLight light(
+      CDRayleighAtmosphere(rayleighOpticalDepth(nm), rayleighDepolarization(nm)),
+      std::cos(50 * degree), 0.2, 1);
   // the mirrored direction has the opposite azimuth
-  return light.down(std::cos(view_deg * degree),
-                    CDRayleighLight::Azimuth::fromRadians((azimuth_deg + 180 - sun_azimuth_deg) * degree));
+  return light.down(
+      std::cos(view_deg * degree),
+      CDRayleighLight::Azimuth::fromRadians((azimuth_deg + 180 - sun_azimuth_deg) * degree));
 }
 }  // namespace
 
@@ -69,14 +78,16 @@ TEST(SkyScenesInvariant, AMirrorReadsTheSkyBack) {
       const json scene = mirrorScene(view, azimuth, rayleigh);
       const double nm[]{450, 650};
       for (const std::size_t band : {0u, 1u}) {
-        const CDStokesVector ours = pixel(scene, band), theirs = mirrored(exact(view, azimuth, nm[band]));
+        const CDStokesVector ours = pixel(scene, band),
+                             theirs = mirrored(exact(view, azimuth, nm[band]));
         EXPECT_LT(apart(ours, theirs), 3e-3) << azimuth << ' ' << view << ' ' << nm[band];
         const bool u = std::abs(theirs.getStokes(2)) > 0.05 * theirs.getScalar();
         with_u += u;
         if (u) {
           EXPECT_GT(apart(ours, mirrored(theirs)), 0.05);  // control: the other sign of U
         }
-        EXPECT_GT(apart(ours, mirrored(exact(view, azimuth + 5, nm[band]))), 3e-3);  // control: 5 degrees beside
+        EXPECT_GT(apart(ours, mirrored(exact(view, azimuth + 5, nm[band]))),
+                  3e-3);  // control: 5 degrees beside
       }
     }
   EXPECT_GT(with_u, 15);
@@ -95,20 +106,53 @@ TEST(SkyScenesInvariant, SunCameraAndWorldTurnTogether) {
 // A dome with aerosol goes through a file into a scene. The table has steps of 2 degrees: h^2/8 of four times S0.
 TEST(SkyScenesInvariant, ADomeWithAerosolIsASkyOfAScene) {
   const Scratch scratch;
-  const std::string air = "sky --wavelength-nm 500 --mu0 0.6 --albedo 0.2 --irradiance 1 --aerosol '" +
-                          (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() / "scenes/data/aerosol-spheroids.csv").string() +
-                          "' --aerosol-tau 0.1 --aerosol-place below ";
+  const std::string air =
+      "sky --wavelength-nm 500 --mu0 0.6 --albedo 0.2 --irradiance 1 --aerosol '" +
+      (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
+       "scenes/data/aerosol-spheroids.csv")
+          .string() +
+      "' --aerosol-tau 0.1 --aerosol-place below ";
   ASSERT_EQ(malusIn(scratch.path, air + "--dome 2 --out sky.csv").code, 0);
-  json scene = mirrorScene(40, 60, {{"model", "table"}, {"file", "sky.csv"}, {"polarization", "full"}});
+  json scene =
+      mirrorScene(40, 60, {{"model", "table"}, {"file", "sky.csv"}, {"polarization", "full"}});
   scene["bands"]["wavelength_nm"] = {500};
   scene.erase("sun");
   const CDStokesVector seen = pixel(scene, 0, scratch.path);
-  std::istringstream answer(malusIn(scratch.path, air + "--mu 0.766044443118978 --phi 240").out);
+  std::istringstream answer(
+      malusIn(scratch.path, air + "--mu 0.766044443118978 --phi 240").out);
   const CDTable one = CDTable::parse(answer, "answer");
-  const CDStokesVector light(one.number(0, "I"), one.number(0, "Q"), one.number(0, "U"), one.number(0, "V"));
+  const CDStokesVector light(one.number(0, "I"), one.number(0, "Q"), one.number(0, "U"),
+                             one.number(0, "V"));
   EXPECT_GT(std::abs(light.getStokes(3)), 0);
   EXPECT_LT(apart(seen, mirrored(light)), 3e-3);
   EXPECT_GT(apart(seen, light), 0.02);
+}
+
+// The scene of figures 7.37 and 7.38 as it is shipped, small: polarised light at both wavelengths, S3 included.
+TEST(SkyScenesInvariant, TheShippedSceneUnderThePolarisedSky) {
+  const Scratch scratch;
+  const std::string scene = (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
+                             "scenes/chunky-bar-polarized-sky.json")
+                                .string();
+  const CDFrame frame = renderScene(readScene(
+      scene,
+      R"({"sensor": {"width": 16, "height": 16, "focal_length_mm": 15, "pixel_pitch_um": 625}, "radiometry": {"rays": [19, 1]}})"));
+  double linear[2]{}, circular[2]{};
+  for (std::size_t y = 0; y < frame.height; ++y)
+    for (std::size_t x = 0; x < frame.width; ++x)
+      for (const std::size_t band : {0u, 1u}) {
+        const double* s = frame.at(x, y, band);
+        linear[band] = std::max(linear[band], std::hypot(s[1], s[2]) / s[0]);
+        circular[band] = std::max(circular[band], std::abs(s[3]) / s[0]);
+      }
+  for (const std::size_t band : {0u, 1u}) {
+    EXPECT_GT(linear[band], 0.01);
+    EXPECT_LT(linear[band], 1);
+    EXPECT_GT(circular[band], 1e-5);
+    EXPECT_LT(circular[band], linear[band]);
+  }
+  EXPECT_GT(linear[0],
+            linear[1]);  // blue skies are brighter, and copper is a poorer metal there
 }
 
 // Section 2.1: what is known is used, and the record says what was.
@@ -139,12 +183,14 @@ TEST(SkyScenesInvariant, TheRecordSaysHowTheSkyIsPolarised) {
   without["polarization"] = "none";
   EXPECT_EQ(record(without)["used"], "none");
   // the same light without its polarisation: only S0, and all of it
-  const CDStokesVector plain = pixel(mirrorScene(40, 20, without), 0), full = pixel(mirrorScene(40, 20, rayleigh), 0);
+  const CDStokesVector plain = pixel(mirrorScene(40, 20, without), 0),
+                       full = pixel(mirrorScene(40, 20, rayleigh), 0);
   EXPECT_NEAR(plain.getScalar() / full.getScalar(), 1, 1e-3);
   EXPECT_LT(plain.getDOLP(), 1e-3);
   EXPECT_GT(full.getDOLP(), 0.05);
   // a scene that promises more than its sky has
-  json scene = mirrorScene(40, 60, {{"model", "table"}, {"file", "partly.csv"}, {"polarization", "full"}});
+  json scene = mirrorScene(
+      40, 60, {{"model", "table"}, {"file", "partly.csv"}, {"polarization", "full"}});
   put(scratch / "s.json", scene.dump());
   const Outcome refused = malusIn(scratch.path, "render s.json --out o");
   EXPECT_EQ(refused.code, 2);

@@ -21,7 +21,8 @@ const double sun_zenith_deg = 50, sun_azimuth_deg = 212;
 
 const CDRayleighSky& truth() {
   static const CDRayleighSky sky(
-      {compassDirection(sun_zenith_deg * degree, sun_azimuth_deg * degree), CDSpectralVector<CDStokesVector>(grid, 1.0)},
+      {compassDirection(sun_zenith_deg * degree, sun_azimuth_deg * degree),
+       CDSpectralVector<CDStokesVector>(grid, 1.0)},
       CDRayleighSky::clearAir(grid, 0.2));
   return sky;
 }
@@ -45,18 +46,22 @@ std::string messageOf(const std::string& text) {
 // The Rayleigh sky measured in random directions, evenly over the hemisphere down to the horizon.
 std::string measured(int count, CDSkyConvention convention, double highest_deg = 90) {
   const bool ours = convention == CDSkyConvention::malus;
-  std::string text = fmt::format("# convention: {}\n# directions: scattered\n# sun_azimuth_deg: {}\n",
-                                 nameOf(convention), sun_azimuth_deg);
-  text += ours ? "zenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n" : "zenith_deg,phi_deg,wavelength_nm,I,Q,U\n";
+  std::string text =
+      fmt::format("# convention: {}\n# directions: scattered\n# sun_azimuth_deg: {}\n",
+                  nameOf(convention), sun_azimuth_deg);
+  text += ours ? "zenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n"
+               : "zenith_deg,phi_deg,wavelength_nm,I,Q,U\n";
   std::mt19937_64 engine(5);
   std::uniform_real_distribution<double> uniform;
   for (int i = 0; i < count; ++i) {
     const double zenith = std::acos(uniform(engine)) / degree, azimuth = 360 * uniform(engine);
     if (zenith > highest_deg) continue;
-    const CDVector d = compassDirection(zenith * degree, (azimuth + (ours ? 0 : sun_azimuth_deg)) * degree);
-    const CDStokesVector light = convertSky(ask(truth(), d), CDSkyConvention::malus, convention);
-    text += fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getStokes(0), light.getStokes(1),
-                        light.getStokes(2));
+    const CDVector d =
+        compassDirection(zenith * degree, (azimuth + (ours ? 0 : sun_azimuth_deg)) * degree);
+    const CDStokesVector light =
+        convertSky(ask(truth(), d), CDSkyConvention::malus, convention);
+    text += fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getStokes(0),
+                        light.getStokes(1), light.getStokes(2));
   }
   return text;
 }
@@ -69,7 +74,8 @@ std::pair<double, double> errorsOf(const CDSky& sky) {
       const CDVector d = compassDirection(zenith * degree, azimuth * degree);
       const CDStokesVector off = ask(sky, d) - ask(truth(), d);
       double square = 0;
-      for (int k = 0; k < 3; ++k) square += std::pow(off.getStokes(k) / ask(truth(), d).getScalar(), 2);
+      for (int k = 0; k < 3; ++k)
+        square += std::pow(off.getStokes(k) / ask(truth(), d).getScalar(), 2);
       all += square, ++count;
       if (zenith < 15) top += square, ++count_top;
     }
@@ -80,7 +86,8 @@ std::pair<double, double> errorsOf(const CDSky& sky) {
 // Planes through neighbours err as the square of their distance, so as 1/count; the horizon, where the sky
 // brightens within degrees, less. Four times as many measurements must halve the error at least.
 TEST(SkyTablesInvariant, ScatteredDirectionsBecomeASky) {
-  for (const auto convention : {CDSkyConvention::malus, CDSkyConvention::iprt, CDSkyConvention::natraj}) {
+  for (const auto convention :
+       {CDSkyConvention::malus, CDSkyConvention::iprt, CDSkyConvention::natraj}) {
     const auto few = errorsOf(*skyOf(measured(300, convention))),
                many = errorsOf(*skyOf(measured(1200, convention)));
     EXPECT_LT(few.first, 0.06) << nameOf(convention);
@@ -95,18 +102,25 @@ TEST(SkyTablesInvariant, ScatteredDirectionsBecomeASky) {
 
 TEST(SkyTablesIdentity, DegreeAndAngleAreTheComponents) {
   const auto table = [](bool components) {
-    std::string text = components ? "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n"
-                                  : "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP,AoLP_deg\n";
+    std::string text =
+        components
+            ? "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n"
+            : "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP,AoLP_deg\n";
     for (double zenith = 0; zenith <= 90; zenith += 10)
       for (double azimuth = 0; azimuth < 360; azimuth += 10) {
-        const CDStokesVector light = ask(truth(), compassDirection(std::max(zenith, 1e-6) * degree, azimuth * degree));
-        text += components ? fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getScalar(), light.getStokes(1), light.getStokes(2))
-                           : fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getScalar(), light.getDOLP(), light.getAoLP() / degree);
+        const CDStokesVector light =
+            ask(truth(), compassDirection(std::max(zenith, 1e-6) * degree, azimuth * degree));
+        text += components
+                    ? fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getScalar(),
+                                  light.getStokes(1), light.getStokes(2))
+                    : fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getScalar(),
+                                  light.getDOLP(), light.getAoLP() / degree);
       }
     return text;
   };
   const auto one = skyOf(table(true)), other = skyOf(table(false));
-  for (const CDVector& d : {compassDirection(0.6, 1), compassDirection(1.2, 4), compassDirection(0, 0)}) {
+  for (const CDVector& d :
+       {compassDirection(0.6, 1), compassDirection(1.2, 4), compassDirection(0, 0)}) {
     const CDStokesVector off = ask(*one, d) - ask(*other, d);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(off.getStokes(k), 0, 1e-12);
   }
@@ -116,12 +130,16 @@ TEST(SkyTablesIdentity, DegreeAndAngleAreTheComponents) {
 // With the degree alone the angle is that of single scattering: in thin air away from the neutral points it
 // departs from the truth by a degree or two.
 TEST(SkyTablesInvariant, DegreeAloneTakesTheAngleOfSingleScattering) {
-  std::string text = fmt::format("# convention: malus\n# sun_zenith_deg: {}\n# sun_azimuth_deg: {}\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP\n",
-                                 sun_zenith_deg, sun_azimuth_deg);
+  std::string text = fmt::format(
+      "# convention: malus\n# sun_zenith_deg: {}\n# sun_azimuth_deg: "
+      "{}\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP\n",
+      sun_zenith_deg, sun_azimuth_deg);
   for (double zenith = 0; zenith <= 90; zenith += 5)
     for (double azimuth = 0; azimuth < 360; azimuth += 5) {
-      const CDStokesVector light = ask(truth(), compassDirection(std::max(zenith, 1e-6) * degree, azimuth * degree));
-      text += fmt::format("{},{},500,{},{}\n", zenith, azimuth, light.getScalar(), light.getDOLP());
+      const CDStokesVector light =
+          ask(truth(), compassDirection(std::max(zenith, 1e-6) * degree, azimuth * degree));
+      text +=
+          fmt::format("{},{},500,{},{}\n", zenith, azimuth, light.getScalar(), light.getDOLP());
     }
   const auto sky = skyOf(text);
   EXPECT_EQ(sky->polarization().state(), "partly");
@@ -141,24 +159,35 @@ TEST(SkyTablesInvariant, DegreeAloneTakesTheAngleOfSingleScattering) {
   // control: another sun, other angles
   text.replace(text.find("212"), 3, "242");
   const CDVector d = compassDirection(40 * degree, 100 * degree);
-  EXPECT_GT(std::abs(std::remainder(ask(*skyOf(text), d).getAoLP() - ask(truth(), d).getAoLP(), pi)), 5 * degree);
+  EXPECT_GT(
+      std::abs(std::remainder(ask(*skyOf(text), d).getAoLP() - ask(truth(), d).getAoLP(), pi)),
+      5 * degree);
 }
 
 TEST(SkyTablesInvariant, RefusesWithASentence) {
   const std::string good = measured(300, CDSkyConvention::malus);
   EXPECT_EQ(messageOf(good), "");
-  EXPECT_NE(messageOf(measured(300, CDSkyConvention::malus, 60)).find("hole"), std::string::npos);
+  EXPECT_NE(messageOf(measured(300, CDSkyConvention::malus, 60)).find("hole"),
+            std::string::npos);
   std::string layout = good;
   layout.replace(layout.find("scattered"), 9, "anywhere");
   EXPECT_NE(messageOf(layout).find("scattered"), std::string::npos);
   layout = good;
-  layout.erase(layout.find("# directions"), layout.find('\n', layout.find("# directions")) + 1 - layout.find("# directions"));
+  layout.erase(layout.find("# directions"), layout.find('\n', layout.find("# directions")) + 1 -
+                                                layout.find("# directions"));
   EXPECT_NE(messageOf(layout), "");  // scattered, and not declared: a grid with holes
-  const std::string degree_only = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP\n";
+  const std::string degree_only =
+      "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,DoLP\n";
   const std::string sun = "# sun_zenith_deg: 40\n# sun_azimuth_deg: 100\n";
-  EXPECT_NE(messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n").find("sun_zenith_deg"), std::string::npos) << messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n");
+  EXPECT_NE(messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n").find("sun_zenith_deg"),
+            std::string::npos)
+      << messageOf(degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n");
   EXPECT_EQ(messageOf(sun + degree_only + "0,0,500,1,0.1\n90,0,500,1,0.1\n"), "");
-  EXPECT_NE(messageOf(sun + degree_only + "0,0,500,1,10\n90,0,500,1,0.1\n").find("fraction"), std::string::npos);
-  const std::string components = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n";
-  EXPECT_NE(messageOf(components + "0,0,500,1,0.1,0\n90,0,500,1,,\n").find("some directions only"), std::string::npos);
+  EXPECT_NE(messageOf(sun + degree_only + "0,0,500,1,10\n90,0,500,1,0.1\n").find("fraction"),
+            std::string::npos);
+  const std::string components =
+      "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2\n";
+  EXPECT_NE(
+      messageOf(components + "0,0,500,1,0.1,0\n90,0,500,1,,\n").find("some directions only"),
+      std::string::npos);
 }

@@ -108,7 +108,14 @@ static void doublingRayleigh(benchmark::State& state) {
   }
   state.counters["off"] = off(light);
 }
-BENCHMARK(doublingRayleigh)->Arg(8)->Arg(12)->Arg(16)->Arg(24)->Arg(32)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(doublingRayleigh)
+    ->Arg(8)
+    ->Arg(12)
+    ->Arg(16)
+    ->Arg(24)
+    ->Arg(32)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 // Air with an aerosol that has so many terms (Henyey and Greenstein): all harmonics, one line of sight.
 static void doublingAerosol(benchmark::State& state) {
@@ -120,6 +127,11 @@ static void doublingAerosol(benchmark::State& state) {
             .down(0, pi / 2));
   state.counters["terms"] = static_cast<double>(aerosol.terms().size());
 }
-BENCHMARK(doublingAerosol)->Arg(30)->Arg(50)->Arg(70)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(doublingAerosol)
+    ->Arg(30)
+    ->Arg(50)
+    ->Arg(70)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 BENCHMARK_MAIN();
