@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -16,8 +17,8 @@ using namespace malus;
 namespace {
 constexpr std::size_t width = 6, height = 4;
 const CDSpectralGridPtr bands = CDSpectralGrid::make(
-    {CDSpectralLocation(CDSpectralPoint(450), CDBandResponse::gaussian(20)), CDSpectralLocation(CDSpectralPoint(550)),
-     CDSpectralLocation(CDSpectralPoint(650.5))});
+    {CDSpectralLocation(CDSpectralPoint(450), CDBandResponse::gaussian(20)),
+     CDSpectralLocation(CDSpectralPoint(550)), CDSpectralLocation(CDSpectralPoint(650.5))});
 const CDCubeHeader header = stokesHeader(width, height, *bands, "W m^-2 sr^-1 nm^-1");
 
 float number(std::size_t x, std::size_t y, std::size_t channel) {
@@ -27,7 +28,8 @@ std::vector<float> tileOf(const CDTile& t) {
   std::vector<float> numbers;
   for (std::size_t y = t.y0; y < t.y1; ++y)
     for (std::size_t x = t.x0; x < t.x1; ++x)
-      for (std::size_t c = 0; c < header.channels.size(); ++c) numbers.push_back(number(x, y, c));
+      for (std::size_t c = 0; c < header.channels.size(); ++c)
+        numbers.push_back(number(x, y, c));
   return numbers;
 }
 const std::vector<CDTile> tiles{{0, 0, 4, 2}, {4, 0, 6, 2}, {0, 2, 6, 4}};
@@ -87,6 +89,20 @@ TEST(CDImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
   EXPECT_EQ(contents(scratch / "x.img"), contents(scratch / "whole.img"));
 }
 
+TEST(CDImageIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  const std::string before = contents(scratch / "x.img");
+  CDCubeWriter again(scratch / "x.img", header, true);
+  EXPECT_TRUE(again.finished(tiles[1]));
+  again.finish();
+  EXPECT_EQ(contents(scratch / "x.img"), before);
+  EXPECT_EQ(filesBelow(scratch.path), 2u);
+  CDCubeHeader other = header;
+  other.description += " of another scene";
+  EXPECT_FALSE(CDCubeWriter(scratch / "x.img", other, true).finished(tiles[1]));
+}
+
 TEST(CDImageIdentity, AnotherCubeIsNotGoneOnWith) {
   const Scratch scratch;
   { CDCubeWriter writer(scratch / "x.img", header); }
@@ -109,7 +125,8 @@ TEST(CDImageIdentity, BadCubesAreNamed) {
     put(scratch / "x.img.hdr", bad);
     return complaint(scratch / "x.img");
   };
-  EXPECT_NE(spoil("data type = 4", "data type = 5").find("data type = 5: is not supported"), std::string::npos);
+  EXPECT_NE(spoil("data type = 4", "data type = 5").find("data type = 5: is not supported"),
+            std::string::npos);
   EXPECT_NE(spoil("samples = 6", "samples = 7").find("should hold"), std::string::npos);
   EXPECT_NE(spoil("samples = 6", "samples = six").find("samples"), std::string::npos);
   EXPECT_NE(spoil("ENVI", "IVNE").find("not the header of an ENVI cube"), std::string::npos);
@@ -136,7 +153,8 @@ TEST(CDImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
   const std::string program =
       "import sys, spectral\nd = spectral.open_image(sys.argv[1] + \".hdr\")\n"
       "assert d.shape == (4, 6, 12), d.shape\n"
-      "assert d.bands.centers[0] == 450 and d.bands.bandwidths[0] == 20 and d.bands.band_unit == \"Nanometers\"\n"
+      "assert d.bands.centers[0] == 450 and d.bands.bandwidths[0] == 20 and d.bands.band_unit "
+      "== \"Nanometers\"\n"
       "assert d.metadata[\"band names\"][5] == \"S1 550\"\n"
       "assert d[2, 3, 1] == ";
   EXPECT_EQ(python(program + "230.0625\n", scratch / "x.img"), 0);
@@ -175,4 +193,49 @@ TEST(QuicklooksIdentity, DrawsEveryQuantityWithItsScale) {
   EXPECT_EQ(rgb[1], 255);  // the green of what is no number
   EXPECT_EQ(rgb[0], 0);
   EXPECT_THROW(quicklooks(cube, 3, scratch / "q"), CDMathError);
+}
+
+namespace {
+/// The red, green and blue of a picture's first row.
+std::vector<std::array<int, 3>> firstRow(const std::filesystem::path& path,
+                                         std::size_t pixels) {
+  const auto in = OIIO::ImageInput::open(path.string());
+  std::vector<unsigned char> rgb(std::size_t(in->spec().width * in->spec().height * 3));
+  in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data());
+  std::vector<std::array<int, 3>> row;
+  for (std::size_t i = 0; i < pixels; ++i)
+    row.push_back({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+  return row;
+}
+int distance(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+}
+}  // namespace
+
+TEST(QuicklooksIdentity, ScalesMeanWhatTheChapterSays) {
+  const Scratch scratch;
+  CDCube cube;
+  cube.header.width = 4, cube.header.height = 1;
+  cube.header.channels = {"S0 550", "S1 550", "S2 550", "S3 550"};
+  const float almost = -std::sin(2 * 0.1f * 3.14159f / 180);  // along 179.9 degrees
+  cube.data = {1, 0.5f, 0, 0, 2, -0.5f, 0, 0, 3, 0, 0, 0, 4, 0.5f, 0.5f * almost, 0};
+  quicklooks(cube, 0, scratch / "q");
+  const auto s1 = firstRow(scratch / "q.S1.png", 4), s0 = firstRow(scratch / "q.S0.png", 4);
+  EXPECT_GT(s1[0][0], s1[0][2] + 100);  // positive: red
+  EXPECT_GT(s1[1][2], s1[1][0] + 100);  // negative: blue
+  EXPECT_LT(distance(s1[2], {247, 247, 247}), 4);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_GT(s0[i][0], s0[i - 1][0]);
+  quicklook(cube, 0, scratch / "one.png");
+  EXPECT_EQ(firstRow(scratch / "one.png", 4), s0);
+  const auto dolp = firstRow(scratch / "q.DoLP.png", 4);  // 1/2, 1/4, 0, 1/8
+  EXPECT_GT(dolp[0][0], dolp[1][0]);
+  EXPECT_GT(dolp[1][0], dolp[3][0]);
+  EXPECT_GT(dolp[3][0], dolp[2][0]);
+  for (float& s : cube.data)
+    s = s > 1 ? 1 : s;  // the same degree for the angles that are compared
+  quicklooks(cube, 0, scratch / "a");
+  const auto angle = firstRow(scratch / "a.AoLP.png", 4);
+  EXPECT_LT(distance(angle[0], angle[3]), 12);
+  EXPECT_GT(distance(angle[0], angle[1]), 200);
+  EXPECT_LT(distance(angle[2], {0, 0, 0}), 4);  // no polarisation, no angle
 }

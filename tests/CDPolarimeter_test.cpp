@@ -60,7 +60,8 @@ TEST(CDPolarimeterIdentity, TheReadingsWorkedByHand) {
       1, 1, 1, 1);
   const std::vector<double> light{2, 1, 0.5, 0};
   EXPECT_LT(farthest(readAll(p, light), {1.25, 1.5, 0.5}), rounding);
-  EXPECT_GT(farthest(readAll(p, light), {0.75, 1.5, 0.5}), 0.1);  // the polariser along -45 degrees
+  EXPECT_GT(farthest(readAll(p, light), {0.75, 1.5, 0.5}),
+            0.1);  // the polariser along -45 degrees
 }
 
 // Malus's own law: what a polariser passes of light that is polarised at an angle to it is cos^2.
@@ -96,7 +97,8 @@ TEST(CDPolarimeterIdentity, SixCamerasAreLeastSquares) {
 TEST(CDPolarimeterIdentity, AMosaicGivesBackAnEvenImageButNotS3) {
   const CDPolarimeter p(mosaicOf(polarsens), width, height, bands, 2, 2);
   EXPECT_EQ(p.measured(), (Measured{true, true, true, false}));
-  EXPECT_EQ(readAll(p, varied()).size(), width * height * bands);  // one reading a pixel and band
+  EXPECT_EQ(readAll(p, varied()).size(),
+            width * height * bands);  // one reading a pixel and band
   const std::vector<double> back = recoverAll(p, readAll(p, even({2, 0.5, -0.3, 0.7})));
   EXPECT_LT(farthest(back, even({2, 0.5, -0.3, 0})), rounding);
 }
@@ -177,7 +179,8 @@ TEST(CDPolarimeterIdentity, EveryBandMayHaveItsOwnFilter) {
   CDFilterPattern pattern = camerasBehind({linearPolarizer(0), linearPolarizer(pi / 2)});
   pattern.channels = 1, pattern.bands = 2;
   const CDPolarimeter p(pattern, 1, 1, 2, 1, 1);
-  EXPECT_LT(farthest(readAll(p, std::vector<double>{1, 1, 0, 0, 1, 1, 0, 0}), {1, 0}), rounding);
+  EXPECT_LT(farthest(readAll(p, std::vector<double>{1, 1, 0, 0, 1, 1, 0, 0}), {1, 0}),
+            rounding);
 }
 
 TEST(CDPolarimeterIdentity, WhatDoesNotFitIsRefused) {

@@ -18,7 +18,8 @@ const CDSpectralGridPtr light = CDSpectralGrid::make({400, 500, 600, 700});
 
 CDSensor camera(CDSensorKind kind, double focal = 100) {
   CDSensorGeometry g;
-  g.kind = kind, g.width = 10, g.height = 6, g.focal_length_px = focal, g.principal_x = 5, g.principal_y = 3;
+  g.kind = kind, g.width = 10, g.height = 6, g.focal_length_px = focal, g.principal_x = 5,
+  g.principal_y = 3;
   g.row_time_s = kind == CDSensorKind::framing ? 0 : 1;
   return CDSensor(g, CDSpectralGrid::make({550}), light);
 }
@@ -40,7 +41,8 @@ TEST(CDPlatformIdentity, PathsMoveStareAndTurn) {
   near(straight.at(4).position, {4, 0, 15});
   EXPECT_EQ(straight.time_s(8), 4);
   EXPECT_THROW(straight.at(9), std::out_of_range);
-  const CDPlatform staring = CDPlatform::staring({-4, 0, 3}, {2, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0}, 5, 1);
+  const CDPlatform staring =
+      CDPlatform::staring({-4, 0, 3}, {2, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0}, 5, 1);
   near(staring.at(0).back, {-0.8, 0, 0.6});
   near(staring.at(4).back, {0.8, 0, 0.6});
   CDPose later = CDPose::looking({2, 0, 15}, {0, 0, -1}, {1, 0, 0});
@@ -49,7 +51,8 @@ TEST(CDPlatformIdentity, PathsMoveStareAndTurn) {
   near(list.at(0, 1).position, {1, 0, 15});
   near(list.at(0, 1).up, {std::sqrt(0.5), std::sqrt(0.5), 0});
   EXPECT_THROW(CDPlatform::poses({later, nadir}), CDMathError);
-  EXPECT_THROW(CDPlatform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 0, 1}, {0}, 1, 0), CDMathError);
+  EXPECT_THROW(CDPlatform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 0, 1}, {0}, 1, 0),
+               CDMathError);
 }
 
 TEST(CDSensorIdentity, PixelsLookWhereThePinholeSays) {
@@ -95,9 +98,12 @@ TEST(CDSensorIdentity, BandsAreAverages) {
 
 TEST(CDSensorIdentity, BadSensorsAreRefused) {
   CDSensorGeometry g = camera(CDSensorKind::framing).geometry();
-  const auto make = [](const CDSensorGeometry& made) { CDSensor(made, CDSpectralGrid::make({550}), light); };
+  const auto make = [](const CDSensorGeometry& made) {
+    CDSensor(made, CDSpectralGrid::make({550}), light);
+  };
   EXPECT_NO_THROW(make(g));
-  for (auto spoil : {+[](CDSensorGeometry& s) { s.width = 0; }, +[](CDSensorGeometry& s) { s.focal_length_px = 0; },
+  for (auto spoil : {+[](CDSensorGeometry& s) { s.width = 0; },
+                     +[](CDSensorGeometry& s) { s.focal_length_px = 0; },
                      +[](CDSensorGeometry& s) { s.samples = 0; }}) {
     CDSensorGeometry bad = g;
     spoil(bad);

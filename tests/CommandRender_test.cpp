@@ -26,14 +26,16 @@ using namespace malus;
 using nlohmann::json;
 
 namespace {
-const std::string scenes = std::filesystem::path(MALUS_SOURCE_DATA).parent_path().string() + "/scenes/";
+const std::string scenes =
+    std::filesystem::path(MALUS_SOURCE_DATA).parent_path().string() + "/scenes/";
 
 /// A small chunky bar, cheap and yet with two bounces.
 json smallScene(int side = 40, int rays = 9) {
   std::ifstream file(scenes + "chunky-bar-copper.json");
   json scene = json::parse(file, nullptr, true, true);
   scene["geometry"][0]["obj"] = scenes + "chunky-bar.obj";
-  scene["sensor"] = {{"kind", "framing"}, {"width", side}, {"height", side - 7}, {"field_of_view_deg", 36.87}};
+  scene["sensor"] = {
+      {"kind", "framing"}, {"width", side}, {"height", side - 7}, {"field_of_view_deg", 36.87}};
   scene["radiometry"] = {{"rays", {rays, 2}}, {"seed", 5}};
   return scene;
 }
@@ -41,7 +43,9 @@ json smallScene(int side = 40, int rays = 9) {
 struct Workplace {
   Scratch scratch;
   explicit Workplace(const json& scene) { put(scratch / "s.json", scene.dump(1)); }
-  Outcome render(const std::string& arguments) const { return malusIn(scratch.path, "render s.json " + arguments); }
+  Outcome render(const std::string& arguments) const {
+    return malusIn(scratch.path, "render s.json " + arguments);
+  }
   std::string file(const std::string& name) const { return contents(scratch / name); }
 };
 
@@ -51,7 +55,8 @@ int interrupt(const Workplace& place, int signal) {
   if (child == 0) {
     if (::chdir(place.scratch.path.c_str()) != 0) ::_exit(3);
     (void)!::freopen("err", "w", stderr);
-    ::execl(MALUS_PROGRAM, MALUS_PROGRAM, "render", "s.json", "--threads", "1", "--out", "b", nullptr);
+    ::execl(MALUS_PROGRAM, MALUS_PROGRAM, "render", "s.json", "--threads", "1", "--out", "b",
+            nullptr);
     ::_exit(3);
   }
   const auto tiles = [&] {
@@ -90,12 +95,14 @@ TEST(CommandRenderInvariant, PartsAreTheVeryPixelsOfTheWhole) {
   const Workplace place(smallScene());
   ASSERT_EQ(place.render("--out a").code, 0);
   ASSERT_EQ(place.render("--out a --tile 5,3,29,20").code, 0);
-  const CDCube whole = readCube(place.scratch / "a/s.img"), part = readCube(place.scratch / "a/s.5-3-29-20.img");
+  const CDCube whole = readCube(place.scratch / "a/s.img"),
+               part = readCube(place.scratch / "a/s.5-3-29-20.img");
   ASSERT_EQ(part.header.width, 24u);
   ASSERT_EQ(part.header.height, 17u);
   for (std::size_t y = 0; y < 17; ++y)
     for (std::size_t x = 0; x < 24; ++x)
-      for (std::size_t c = 0; c < 4; ++c) ASSERT_EQ(part.at(x, y, c), whole.at(x + 5, y + 3, c));
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(part.at(x, y, c), whole.at(x + 5, y + 3, c));
 }
 
 TEST(CommandRenderInvariant, InMemoryAndOnDiskAreTheSamePicture) {
@@ -105,7 +112,8 @@ TEST(CommandRenderInvariant, InMemoryAndOnDiskAreTheSamePicture) {
   const CDFrame frame = renderScene(readScene(place.scratch / "s.json"));
   for (std::size_t y = 0; y < frame.height; ++y)
     for (std::size_t x = 0; x < frame.width; ++x)
-      for (std::size_t c = 0; c < 4; ++c) ASSERT_EQ(cube.at(x, y, c), static_cast<float>(frame.at(x, y)[c]));
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(cube.at(x, y, c), static_cast<float>(frame.at(x, y)[c]));
 }
 
 TEST(CommandRenderInvariant, AKilledRenderIsResumedToTheSameBits) {
@@ -129,7 +137,9 @@ TEST(CommandRenderIdentity, CtrlCSaysHowToGoOnAndTheRestGivesTheSameBits) {
   EXPECT_EQ(WEXITSTATUS(status), 130);
   const std::string said = place.file("err");
   EXPECT_NE(said.find("stopped at"), std::string::npos) << said;
-  EXPECT_NE(said.find("malus render s.json --out b --resume goes on from here"), std::string::npos) << said;
+  EXPECT_NE(said.find("malus render s.json --out b --resume goes on from here"),
+            std::string::npos)
+      << said;
   ASSERT_EQ(place.render("--out b --resume").code, 0);
   EXPECT_EQ(place.file("a/s.img"), place.file("b/s.img"));
 }
@@ -164,64 +174,90 @@ TEST(CommandRenderIdentity, TheRunIsWrittenDown) {
 
 namespace {
 struct BadScene {
-  std::string patch;    // of the small scene
+  std::string patch;     // of the small scene
   std::string expected;  // what the message must contain
 };
 
 const std::vector<BadScene> bad_scenes{
     {R"({"skyy": 1})", "skyy: is not a known key here; did you mean sky?"},
-    {R"({"sensor": {"widht": 3}})", "sensor.widht: is not a known key here; did you mean width?"},
-    {R"({"radiometry": {"sampling": "gird"}})", "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
+    {R"({"sensor": {"widht": 3}})",
+     "sensor.widht: is not a known key here; did you mean width?"},
+    {R"({"radiometry": {"sampling": "gird"}})",
+     "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
     {R"({"platform": null})", "lacks \"platform\"; give where the sensor stands"},
     {R"({"geometry": [{"obj": "missing.obj"}]})", "missing.obj"},
     {R"({"geometry": [{"obj": "nan.obj"}]})", "nan.obj"},
     {R"({"geometry": []})", "geometry = []: is not allowed here"},
-    {R"({"sensor": {"width": 0}})", "sensor.width = 0: is not allowed here; give a whole number, 1 or more"},
+    {R"({"sensor": {"width": 0}})",
+     "sensor.width = 0: is not allowed here; give a whole number, 1 or more"},
     {R"({"sensor": {"height": -4}})", "sensor.height = -4: is not allowed here"},
-    {R"({"sensor": {"field_of_view_deg": 180}})", "sensor.field_of_view_deg = 180: is not allowed here"},
+    {R"({"sensor": {"field_of_view_deg": 180}})",
+     "sensor.field_of_view_deg = 180: is not allowed here"},
     {R"({"sensor": {"pixel_pitch_um": 5}})", "does not say in one way what it sees"},
-    {R"({"platform": {"position_m": [-2, 2, 0.5]}})", "the camera of frame 0 stands inside of a solid"},
-    {R"({"platform": {"position_m": [0, 9, -1]}})", "the camera of frame 0 is at z = -1 m, on or below the ground"},
-    {R"({"platform": {"position_m": [0, 9, 0], "up": [0, 0, 1]}})", "the camera of frame 0 is at z = 0 m, on or below"},
-    {R"({"platform": {"look_at_m": [0, 0, 30]}, "sky": null})", "the camera looks at nothing but a black sky"},
+    {R"({"platform": {"position_m": [-2, 2, 0.5]}})",
+     "the camera of frame 0 stands inside of a solid"},
+    {R"({"platform": {"position_m": [0, 9, -1]}})",
+     "the camera of frame 0 is at z = -1 m, on or below the ground"},
+    {R"({"platform": {"position_m": [0, 9, 0], "up": [0, 0, 1]}})",
+     "the camera of frame 0 is at z = 0 m, on or below"},
+    {R"({"platform": {"look_at_m": [0, 0, 30]}, "sky": null})",
+     "the camera looks at nothing but a black sky"},
     {R"({"platform": {"look_at_m": [0, 0, 15]}})", "platform = "},
-    {R"({"materials": {"ground": {"reflectance": {"wavelength_nm": [400, 500], "values": [0.1, 0.2]}}}})", "550"},
-    {R"({"materials": {"ground": {"reflectance": {"file": "missing.csv", "column": "r"}}}})", "missing.csv"},
-    {R"({"materials": {"ground": {"reflectance": 1.2}}})", "materials.ground.reflectance = 1.2: must be 0 to 1"},
+    {R"({"materials": {"ground": {"reflectance": {"wavelength_nm": [400, 500], "values": [0.1, 0.2]}}}})",
+     "550"},
+    {R"({"materials": {"ground": {"reflectance": {"file": "missing.csv", "column": "r"}}}})",
+     "missing.csv"},
+    {R"({"materials": {"ground": {"reflectance": 1.2}}})",
+     "materials.ground.reflectance = 1.2: must be 0 to 1"},
     {R"({"materials": {"ground": {"sigma": 0.2}}})", "is no parameter of lambertian"},
     {R"({"materials": {"copper-010": {"sigma": null}}})", "lacks \"sigma\"; give roughness"},
-    {R"({"materials": {"copper-010": {"model": "torrence-sparow"}}})", "did you mean torrance-sparrow?"},
+    {R"({"materials": {"copper-010": {"model": "torrence-sparow"}}})",
+     "did you mean torrance-sparrow?"},
     {R"({"materials": {"ground": null}})", "lacks the material \"ground\" of a surface"},
-    {R"({"sky": {"radiance_W_m2_sr_nm": -0.05}})", "sky.radiance_W_m2_sr_nm = -0.05: is not allowed here; give a number that is not negative"},
-    {R"({"sun": {"irradiance_W_m2_nm": -1}})", "sun.irradiance_W_m2_nm = -1: is not allowed here"},
+    {R"({"sky": {"radiance_W_m2_sr_nm": -0.05}})",
+     "sky.radiance_W_m2_sr_nm = -0.05: is not allowed here; give a number that is not "
+     "negative"},
+    {R"({"sun": {"irradiance_W_m2_nm": -1}})",
+     "sun.irradiance_W_m2_nm = -1: is not allowed here"},
     {R"({"sun": null, "sky": null})", "has no light"},
-    {R"({"sun": {"irradiance_W_m2_nm": 0}, "sky": {"radiance_W_m2_sr_nm": 0}})", "has no light"},
-    {R"({"sun": {"time": "2001-06-10T17:06:00Z"}})", "does not say in one way where the sun stands"},
+    {R"({"sun": {"irradiance_W_m2_nm": 0}, "sky": {"radiance_W_m2_sr_nm": 0}})",
+     "has no light"},
+    {R"({"sun": {"time": "2001-06-10T17:06:00Z"}})",
+     "does not say in one way where the sun stands"},
     {R"({"bands": {"wavelength_nm": [550, 450]}})", "bands"},
-    {R"({"bands": {"wavelength_nm": [-550]}})", "bands.wavelength_nm[0] = -550: is not allowed here; give"},
-    {R"({"malus": 2})", "malus = 2: is not allowed here; give the version of the scene format, 1"},
+    {R"({"bands": {"wavelength_nm": [-550]}})",
+     "bands.wavelength_nm[0] = -550: is not allowed here; give"},
+    {R"({"malus": 2})",
+     "malus = 2: is not allowed here; give the version of the scene format, 1"},
     {R"({"radiometry": {"rays": [0]}})", "radiometry.rays[0] = 0: is not allowed here"},
-    {R"({"radiometry": {"mis": 1}})", "radiometry.mis = 1: is not allowed here; give true or false"},
+    {R"({"radiometry": {"mis": 1}})",
+     "radiometry.mis = 1: is not allowed here; give true or false"},
     {R"({"sensor": {"polarimeter": {}}})", "does not say in one way where its filters are"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"polarizer_deg": 0}, {"polarizer_deg": 45}, {"polarizer_deg": 90}]}}})",
-     "has filters that cannot tell S3; add filters that answer to it (a retarder before a polarizer, for S3), or write "
+     "has filters that cannot tell S3; add filters that answer to it (a retarder before a "
+     "polarizer, for S3), or write "
      "\"recover\": [\"S0\", \"S1\", \"S2\"]"},
     {R"({"sensor": {"polarimeter": {"mosaic": [[{"polarizer_deg": 0}, {"polarizer_deg": 45}]], "recover": ["S0"]}}})",
      "has filters that cannot tell S0"},
-    {R"({"sensor": {"polarimeter": {"mosaic": [[{}, {}], [{}]], "recover": []}}})", "mosaic[1]"},
+    {R"({"sensor": {"polarimeter": {"mosaic": [[{}, {}], [{}]], "recover": []}}})",
+     "mosaic[1]"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"name": "a"}, {"name": "a"}], "recover": []}}})",
      "has the name a of another camera"},
-    {R"({"sensor": {"polarimeter": {"cameras": [{"retarder_deg": 0}], "recover": []}}})", "has half a retarder"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"retarder_deg": 0}], "recover": []}}})",
+     "has half a retarder"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"polariser_deg": 0}], "recover": []}}})",
      "polariser_deg: is not a known key here; did you mean polarizer_deg?"},
-    {R"({"sensor": {"polarimeter": {"cameras": [{"transmittance": 1.5}], "recover": []}}})", "at most 1"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"transmittance": 1.5}], "recover": []}}})",
+     "at most 1"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[1, 0, 0, 0]]}], "recover": []}}})",
      "is no Mueller matrix"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[0.5, 0.6, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]}],
          "recover": []}}})",
      "reads less than nothing of some light"},
-    {R"({"sensor": {"polarimeter": {"cameras": [{"calibration": "missing.img"}], "recover": []}}})", "missing.img"},
-    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S4"]}}})", "recover[0] = \"S4\": is not allowed here"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{"calibration": "missing.img"}], "recover": []}}})",
+     "missing.img"},
+    {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S4"]}}})",
+     "recover[0] = \"S4\": is not allowed here"},
     {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"], "window_px": [99, 1]}}})",
      "the window of a polarimeter must fit into its image"},
     {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"],
@@ -269,6 +305,18 @@ TEST(CommandRenderIdentity, NegativeControlTheGoodSceneIsNotRefused) {
   EXPECT_EQ(outcome.err, "");
 }
 
+TEST(CommandRenderIdentity, ADirectoryIsNoScene) {
+  const Scratch scratch;
+  std::filesystem::create_directory(scratch / "d.json");
+  for (const char* command : {"render d.json", "info d.json", "info .", "products ."}) {
+    const Outcome outcome = malusIn(scratch.path, command);
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_NE(malusIn(scratch.path, "render d.json").err.find("is a directory"),
+            std::string::npos);
+}
+
 TEST(CommandRenderIdentity, AMistakeIsToldWithLineAndColumn) {
   const Scratch scratch;
   json scene = smallScene();
@@ -276,17 +324,20 @@ TEST(CommandRenderIdentity, AMistakeIsToldWithLineAndColumn) {
   put(scratch / "s.json", scene.dump(1));
   const std::string text = contents(scratch / "s.json");
   const std::size_t at = text.find("\"samples_per_pixel\": ") + 21;
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   const std::size_t column = at - text.rfind('\n', at);
   const Outcome outcome = malusIn(scratch.path, "render s.json");
-  EXPECT_TRUE(outcome.err.starts_with("s.json:" + std::to_string(line) + ':' + std::to_string(column) + ": "))
+  EXPECT_TRUE(outcome.err.starts_with("s.json:" + std::to_string(line) + ':' +
+                                      std::to_string(column) + ": "))
       << outcome.err;
 }
 
 TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
   const Workplace place(smallScene());
-  for (const char* flags : {"--tile 0,0,41,10", "--tile 5,5,5,9", "--tile 1,2,3", "--frames 1:2", "--frames x",
-                            "--seed -1", "--threads -2", "--out /proc/nowhere"}) {
+  for (const char* flags :
+       {"--tile 0,0,41,10", "--tile 5,5,5,9", "--tile 1,2,3", "--frames 1:2", "--frames x",
+        "--seed -1", "--threads -2", "--out /proc/nowhere"}) {
     const Outcome outcome = place.render(flags);
     EXPECT_EQ(outcome.code, 2) << flags << '\n' << outcome.err;
     EXPECT_EQ(filesBelow(place.scratch.path), 1u) << flags;
@@ -297,7 +348,8 @@ TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
 TEST(CommandRenderIdentity, AFullDiskIsToldBeforeTheFirstRayAndLeavesNothing) {
   const Workplace place(smallScene(400));
   const Outcome outcome =
-      runIn(place.scratch.path, "ulimit -f 20; trap '' XFSZ; '" MALUS_PROGRAM "' render s.json --out a");
+      runIn(place.scratch.path,
+            "ulimit -f 20; trap '' XFSZ; '" MALUS_PROGRAM "' render s.json --out a");
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("cannot be written"), std::string::npos) << outcome.err;
   EXPECT_EQ(filesBelow(place.scratch.path), 1u);
@@ -321,7 +373,8 @@ TEST(CommandRenderIdentity, AResumeAfterAnInputHasChangedIsRefused) {
     put(place.scratch / changed, before + "\n");
     const Outcome refused = place.render("--out b --resume");
     EXPECT_EQ(refused.code, 2);
-    EXPECT_NE(refused.err.find(std::string(changed) + ": is not the file that this frame was made with"),
+    EXPECT_NE(refused.err.find(std::string(changed) +
+                               ": is not the file that this frame was made with"),
               std::string::npos)
         << refused.err;
     put(place.scratch / changed, before);
@@ -337,7 +390,8 @@ TEST(CommandRenderInvariant, TheRecordOfAResumedRenderCountsTheWholeFrame) {
   ASSERT_TRUE(WIFEXITED(interrupt(place, SIGINT)));
   const double before = json::parse(place.file("b/s.run.json.part"))["seconds"];
   ASSERT_EQ(place.render("--out b --resume").code, 0);
-  const json whole = json::parse(place.file("a/s.run.json")), resumed = json::parse(place.file("b/s.run.json"));
+  const json whole = json::parse(place.file("a/s.run.json")),
+             resumed = json::parse(place.file("b/s.run.json"));
   EXPECT_EQ(whole["rays_followed"], resumed["rays_followed"]);
   EXPECT_EQ(whole["files"], resumed["files"]);
   EXPECT_GT(before, 0);
@@ -353,13 +407,15 @@ TEST(CommandRenderInvariant, AFrameThatLacksItsLastFilesIsNotRenderedAgain) {
   const Outcome outcome = place.render("--out a --resume");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find(": 0 of "), std::string::npos) << outcome.err;
-  EXPECT_EQ(json::parse(place.file("a/s.run.json"))["rays_followed"], json::parse(record)["rays_followed"]);
+  EXPECT_EQ(json::parse(place.file("a/s.run.json"))["rays_followed"],
+            json::parse(record)["rays_followed"]);
   EXPECT_EQ(place.file("a/s.img"), picture);
 }
 
 namespace {
 json fourCameras() {
-  return json::parse(R"([{"name": "P0", "polarizer_deg": 0}, {"name": "P45", "polarizer_deg": 45},
+  return json::parse(
+      R"([{"name": "P0", "polarizer_deg": 0}, {"name": "P45", "polarizer_deg": 45},
       {"name": "P90", "polarizer_deg": 90},
       {"name": "right", "retarder_deg": 45, "retardance_deg": 90, "polarizer_deg": 0}])");
 }
@@ -369,10 +425,13 @@ const json mosaic = json::parse(R"([[{"polarizer_deg": 90}, {"polarizer_deg": 45
 double farthest(const CDCube& a, const CDCube& b, std::size_t components = 4) {
   double most = a.data.size() == b.data.size() ? 0 : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min(a.data.size(), b.data.size()); ++i)
-    if (i % 4 < components) most = std::max(most, std::abs(double(a.data[i]) - double(b.data[i])));
+    if (i % 4 < components)
+      most = std::max(most, std::abs(double(a.data[i]) - double(b.data[i])));
   return most;
 }
-double brightest(const CDCube& cube) { return *std::max_element(cube.data.begin(), cube.data.end()); }
+double brightest(const CDCube& cube) {
+  return *std::max_element(cube.data.begin(), cube.data.end());
+}
 // Numbers are rounded to float three times on the way, and the condition numbers here are below 5.
 constexpr double float_rounding = 3 * 5 * 0x1p-24;
 }  // namespace
@@ -384,10 +443,12 @@ TEST(PolarimeterIdentity, FourIdealCamerasRecoverTheRenderedStokesVectors) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"), back = readCube(place.scratch / "a/s.recovered.img");
+  const CDCube light = readCube(place.scratch / "a/s.img"),
+               back = readCube(place.scratch / "a/s.recovered.img");
   const CDCube readings = readCube(place.scratch / "a/s.readings.img");
-  EXPECT_EQ(readings.header.channels, (std::vector<std::string>{"P0 500", "P45 500", "P90 500", "right 500", "P0 600",
-                                                                "P45 600", "P90 600", "right 600"}));
+  EXPECT_EQ(readings.header.channels,
+            (std::vector<std::string>{"P0 500", "P45 500", "P90 500", "right 500", "P0 600",
+                                      "P45 600", "P90 600", "right 600"}));
   EXPECT_EQ(readings.header.unit, light.header.unit);
   EXPECT_LT(farthest(light, back), float_rounding * brightest(light));
   // S3 is there to be recovered, and by the right-handed camera: its reading is (S0 + S3) / 2
@@ -413,7 +474,8 @@ TEST(PolarimeterIdentity, NegativeControlATurnedPolarizerIsNoticed) {
   const Workplace other(scene);
   ASSERT_EQ(other.render("--out a").code, 0);
   EXPECT_EQ(place.file("a/s.img"), other.file("a/s.img"));
-  const CDCube a = readCube(place.scratch / "a/s.readings.img"), b = readCube(other.scratch / "a/s.readings.img");
+  const CDCube a = readCube(place.scratch / "a/s.readings.img"),
+               b = readCube(other.scratch / "a/s.readings.img");
   EXPECT_GT(farthest(a, b), 10 * float_rounding * brightest(a));
 }
 
@@ -426,7 +488,8 @@ TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"), back = readCube(place.scratch / "a/s.recovered.img");
+  const CDCube light = readCube(place.scratch / "a/s.img"),
+               back = readCube(place.scratch / "a/s.recovered.img");
   // over 1e-4 degrees the copper's lobe changes by 2e-6 / sigma of itself
   const double even = 1e-5 * brightest(light);
   EXPECT_LT(farthest(light, back, 3), even);
@@ -437,7 +500,8 @@ TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
   const Workplace edges(scene);
   ASSERT_EQ(edges.render("--out a").code, 0);
   const CDCube seen = readCube(edges.scratch / "a/s.img");
-  EXPECT_GT(farthest(seen, readCube(edges.scratch / "a/s.recovered.img"), 3), 0.1 * brightest(seen));
+  EXPECT_GT(farthest(seen, readCube(edges.scratch / "a/s.recovered.img"), 3),
+            0.1 * brightest(seen));
 }
 
 TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
@@ -448,11 +512,13 @@ TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
   const Workplace ideal(scene);
   ASSERT_EQ(ideal.render("--out a").code, 0);
   const std::array<std::string, 4> files{"first.img", "second.img", "third.img", "fourth.img"};
-  for (std::size_t i = 0; i < 4; ++i) cameras[i] = {{"name", cameras[i]["name"]}, {"calibration", files[i]}};
+  for (std::size_t i = 0; i < 4; ++i)
+    cameras[i] = {{"name", cameras[i]["name"]}, {"calibration", files[i]}};
   scene["sensor"]["polarimeter"]["cameras"] = cameras;
   const Workplace place(scene);
-  const std::array<CDMuellerMatrix, 4> filters{linearPolarizer(0), linearPolarizer(std::numbers::pi / 4),
-                                               linearPolarizer(std::numbers::pi / 2), circularPolarizer(1)};
+  const std::array<CDMuellerMatrix, 4> filters{
+      linearPolarizer(0), linearPolarizer(std::numbers::pi / 4),
+      linearPolarizer(std::numbers::pi / 2), circularPolarizer(1)};
   for (std::size_t i = 0; i < 4; ++i) {
     CDCubeHeader header;
     header.width = width, header.height = height;
@@ -466,16 +532,20 @@ TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
   }
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube a = readCube(ideal.scratch / "a/s.readings.img"), b = readCube(place.scratch / "a/s.readings.img");
+  const CDCube a = readCube(ideal.scratch / "a/s.readings.img"),
+               b = readCube(place.scratch / "a/s.readings.img");
   EXPECT_LT(farthest(a, b), float_rounding * brightest(a));
-  EXPECT_LT(farthest(readCube(place.scratch / "a/s.img"), readCube(place.scratch / "a/s.recovered.img")),
+  EXPECT_LT(farthest(readCube(place.scratch / "a/s.img"),
+                     readCube(place.scratch / "a/s.recovered.img")),
             float_rounding * brightest(a));
   scene["sensor"]["width"] = 41;
   put(place.scratch / "s.json", scene.dump(1));
   const Outcome wrong = place.render("--out c");
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_NE(wrong.err.find("has 40 x 33 pixels and the sensor 41 x 33; give a calibration of the sensor's size"),
-            std::string::npos)
+  EXPECT_NE(
+      wrong.err.find(
+          "has 40 x 33 pixels and the sensor 41 x 33; give a calibration of the sensor's size"),
+      std::string::npos)
       << wrong.err;
   EXPECT_FALSE(std::filesystem::exists(place.scratch / "c"));
 }
@@ -486,11 +556,13 @@ TEST(PolarimeterInvariant, NoiseHasTheMeanAndTheVarianceOfItsElectrons) {
   scene["sensor"]["polarimeter"] = {{"cameras", fourCameras()}};
   const Workplace clean(scene);
   ASSERT_EQ(clean.render("--out a").code, 0);
-  scene["sensor"]["polarimeter"]["noise"] = {{"electrons_per_unit", gain}, {"read_noise_electrons", read}};
+  scene["sensor"]["polarimeter"]["noise"] = {{"electrons_per_unit", gain},
+                                             {"read_noise_electrons", read}};
   const Workplace noisy(scene);
   ASSERT_EQ(noisy.render("--out a").code, 0);
   EXPECT_EQ(clean.file("a/s.img"), noisy.file("a/s.img"));
-  const CDCube mean = readCube(clean.scratch / "a/s.readings.img"), drawn = readCube(noisy.scratch / "a/s.readings.img");
+  const CDCube mean = readCube(clean.scratch / "a/s.readings.img"),
+               drawn = readCube(noisy.scratch / "a/s.readings.img");
   double sum = 0, squares = 0;
   const auto n = double(mean.data.size());
   for (std::size_t i = 0; i < mean.data.size(); ++i) {
@@ -507,9 +579,10 @@ TEST(PolarimeterInvariant, NoiseHasTheMeanAndTheVarianceOfItsElectrons) {
 
 TEST(PolarimeterInvariant, ReadingsAreTheSameBitsForThreadsPartsAndResumes) {
   json scene = smallScene(160, 60);
-  scene["sensor"]["polarimeter"] = {{"mosaic", mosaic},
-                                    {"recover", {"S0", "S1", "S2"}},
-                                    {"noise", {{"electrons_per_unit", 1e4}, {"full_well_electrons", 3000}}}};
+  scene["sensor"]["polarimeter"] = {
+      {"mosaic", mosaic},
+      {"recover", {"S0", "S1", "S2"}},
+      {"noise", {{"electrons_per_unit", 1e4}, {"full_well_electrons", 3000}}}};
   const Workplace place(scene);
   ASSERT_EQ(place.render("--threads 1 --out a").code, 0);
   ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL)));
@@ -523,7 +596,8 @@ TEST(PolarimeterInvariant, ReadingsAreTheSameBitsForThreadsPartsAndResumes) {
     EXPECT_EQ(whole, place.file(std::string("b/") + name)) << name;
     EXPECT_EQ(whole, place.file(std::string("c/") + name)) << name;
   }
-  const json a = json::parse(place.file("a/s.run.json"))["polarimeter"], b = json::parse(place.file("b/s.run.json"))["polarimeter"];
+  const json a = json::parse(place.file("a/s.run.json"))["polarimeter"],
+             b = json::parse(place.file("b/s.run.json"))["polarimeter"];
   EXPECT_EQ(a["full_wells"], b["full_wells"]);
   EXPECT_GT(a["full_wells"], 0);
   ASSERT_EQ(place.render("--out d --seed 6").code, 0);
@@ -535,14 +609,16 @@ TEST(PolarimeterIdentity, AFilterMayDependOnTheBand) {
   scene["bands"]["wavelength_nm"] = {500, 600};
   scene["radiometry"]["rays"] = {1};
   scene["sensor"]["polarimeter"] = {
-      {"cameras", json::parse(R"([{"transmittance": {"wavelength_nm": [400, 700], "values": [0.4, 0.7]}},
+      {"cameras",
+       json::parse(R"([{"transmittance": {"wavelength_nm": [400, 700], "values": [0.4, 0.7]}},
                                   {"mueller": [[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],
                                                [[0.5,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]]}])")},
       {"recover", {"S0"}}};
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"), readings = readCube(place.scratch / "a/s.readings.img");
+  const CDCube light = readCube(place.scratch / "a/s.img"),
+               readings = readCube(place.scratch / "a/s.readings.img");
   const std::array<double, 4> passes{0.5, 1, 0.6, 0.5};
   for (std::size_t pixel = 0; pixel < 40 * 33; ++pixel)
     for (std::size_t i = 0; i < 4; ++i)
@@ -567,7 +643,8 @@ TEST(SceneIdentity, SobolAndTheSkysShareAreChosenInTheScene) {
 TEST(SceneIdentity, AllScenesThatShipWithMalusAreGood) {
   std::size_t found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
-    if (entry.path().extension() != ".json" || entry.path().stem() == "parking-lot") continue;  // its mesh is generated
+    if (entry.path().extension() != ".json" || entry.path().stem() == "parking-lot")
+      continue;  // its mesh is generated
     ++found;
     EXPECT_NO_THROW(readScene(entry.path())) << entry.path();
   }
@@ -584,17 +661,19 @@ TEST(SceneIdentity, ASunWithATimeMovesWithTheFrames) {
 }
 
 TEST(SceneIdentity, EveryPartOfTheSchemaIsDescribedForTheMessages) {
-  const std::function<void(const json&, const std::string&)> visit = [&](const json& schema, const std::string& path) {
-    if (schema.contains("$ref")) return;
-    if (path != "") {
-      EXPECT_TRUE(schema.contains("description")) << path;
-    }
-    if (schema.contains("properties"))
-      for (const auto& [key, value] : schema["properties"].items()) visit(value, path + '/' + key);
-    if (schema.contains("properties")) {
-      EXPECT_EQ(schema.value("additionalProperties", json(true)), false) << path;
-    }
-  };
+  const std::function<void(const json&, const std::string&)> visit =
+      [&](const json& schema, const std::string& path) {
+        if (schema.contains("$ref")) return;
+        if (path != "") {
+          EXPECT_TRUE(schema.contains("description")) << path;
+        }
+        if (schema.contains("properties"))
+          for (const auto& [key, value] : schema["properties"].items())
+            visit(value, path + '/' + key);
+        if (schema.contains("properties")) {
+          EXPECT_EQ(schema.value("additionalProperties", json(true)), false) << path;
+        }
+      };
   visit(sceneSchema(), "");
   for (const auto& [key, value] : sceneSchema()["definitions"].items()) visit(value, key);
 }
@@ -604,7 +683,8 @@ TEST(SceneIdentity, BroadBandsAreMixedFromTheGridOfLight) {
   scene["bands"] = json::parse(R"([{"center_nm": 500, "fwhm_nm": 20, "response": "gaussian"},
       {"center_nm": 600, "response": {"wavelength_nm": [590, 600, 610], "values": [0, 1, 0]}}])");
   // A light that rises evenly over wavelength has at each symmetric band's centre the mean over the band.
-  scene["sky"]["radiance_W_m2_sr_nm"] = json::parse(R"({"wavelength_nm": [400, 700], "values": [0.4, 0.7]})");
+  scene["sky"]["radiance_W_m2_sr_nm"] =
+      json::parse(R"({"wavelength_nm": [400, 700], "values": [0.4, 0.7]})");
   scene["sun"] = nullptr;
   scene["materials"]["ground"]["reflectance"] = 0.5;
   scene["geometry"] = json::parse(R"([{"ground": {"material": "ground"}}])");
@@ -615,10 +695,12 @@ TEST(SceneIdentity, BroadBandsAreMixedFromTheGridOfLight) {
   ASSERT_EQ(frame.bands, 2u);
   // The forty rays see cos(theta) summed a few per cent off; a narrow band at a known radiance says by how much.
   scene["bands"] = {{"wavelength_nm", {500}}};
-  const CDFrame narrow =
-      renderScene(readSceneText(scene.dump(), "s.json", "."), 0, {1, CDTile{3, 3, 4, 4}, nullptr});
-  const double per_radiance = narrow.at(0, 0)[0] / 0.5, rounding = 1e-12;  // of averages over a dozen wavelengths
+  const CDFrame narrow = renderScene(readSceneText(scene.dump(), "s.json", "."), 0,
+                                     {1, CDTile{3, 3, 4, 4}, nullptr});
+  const double per_radiance = narrow.at(0, 0)[0] / 0.5,
+               rounding = 1e-12;  // of averages over a dozen wavelengths
   EXPECT_NEAR(frame.at(0, 0, 0)[0] / per_radiance, 0.5, rounding);
   EXPECT_NEAR(frame.at(0, 0, 1)[0] / per_radiance, 0.6, rounding);
-  EXPECT_GT(std::abs(frame.at(0, 0, 1)[0] / per_radiance - 0.5), rounding);  // the other band's value would be seen
+  EXPECT_GT(std::abs(frame.at(0, 0, 1)[0] / per_radiance - 0.5),
+            rounding);  // the other band's value would be seen
 }
