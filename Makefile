@@ -11,7 +11,7 @@ GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
-BOOK    := latexml fonts-texgyre fonts-texgyre-math
+BOOK    := latexml universal-ctags fonts-texgyre fonts-texgyre-math
 # other people's readers of our cubes, for the tests alone
 TEST    := python3-gdal python3-spectral
 

@@ -1,6 +1,6 @@
 """What a book is before it is rendered: its pages in parts, what they refer to, and its chunks.
 
-Two renderers stand on this: weave.py makes the HTML, print.py the PDF.
+Two renderers stand on this: weave.py makes the HTML, pdf.py the PDF.
 """
 import argparse
 import configparser
@@ -9,8 +9,10 @@ import re
 import sys
 
 import latexml
+import names
 import noweb
 import references
+import verdicts
 from problems import Problem, Problems, stop_if_any
 
 LABEL = re.compile(r"\\label\{([^}]*)\}")
@@ -54,6 +56,7 @@ class Links:
         self.cited = {}        # key -> pages that cite it
         self.figures = {}      # name in \includegraphics -> file
         self.anchors = {}      # noweb's label -> (page file, anchor)
+        self.inventory = None  # the page with the table of all items
 
     @staticmethod
     def read_values(path):
@@ -152,11 +155,17 @@ class Book:
         self.about = configparser.ConfigParser()
         self.about.read(os.path.join(options.book, "book.ini"), encoding="utf-8")
         self.chapters = noweb.read(options.chapters)
+        read = {os.path.normpath(path) for path in options.chapters}  # a header may outlive its chapter
+        public = names.public(options.headers) if options.headers else []
+        self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
+        self.verdicts = verdicts.Verdicts(options.report)
         self.parts, self.front, self.back = [], [], []
 
     def gather(self):
         """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
+        defined = {word for chapter in self.chapters for chunk in chapter.chunks for word, _ in chunk.defines}
+        stop_if_any(names.check(self.names, defined))
         parts, number = {}, 0  # the folder "back" holds what stands after the last part
         for chapter in self.chapters:
             folder = os.path.basename(os.path.dirname(chapter.path))
@@ -192,6 +201,13 @@ class Book:
                          for name, label in chunk.used_chunks if not label]
         stop_if_any(problems)
 
+    def substitute(self, page):
+        """Puts into the prose what the program computed."""
+        if re.search(r"^\\inventory$", page.latex, re.MULTILINE):
+            self.links.inventory = page
+        self.verdicts.substitute(page, self.chapters, self.pages())
+        self.links.substitute(page)
+
     def pages(self):
         """In reading order."""
         return self.front + [page for part in self.parts for page in part.pages] + self.back
@@ -202,6 +218,7 @@ def run(description, render):
     arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
+    arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
     arguments.add_argument("chapters", nargs="+")
     try:
         render(arguments.parse_args())

@@ -39,7 +39,8 @@ def name_html(name):
 class Listing:
     """What stands in and below the chunks of a book. A renderer says how a link, a word or a colour is written."""
 
-    def __init__(self, chapters):
+    def __init__(self, chapters, names=()):
+        self.names = names  # public names of the program's headers (names.py)
         self.chunks = [chunk for chapter in chapters for chunk in chapter.chunks]
         self.by_label = {chunk.label: chunk for chunk in self.chunks}
 
@@ -93,42 +94,64 @@ class Listing:
 
     def identifiers(self):
         """(identifier, what it is, labels of the chunks that define it, labels of the others that use it), by name."""
-        defined, used = {}, {}
+        defined, used, about = {}, {}, {}
         for chunk in self.chunks:
             for word, users in chunk.defines:
                 defined.setdefault(word, set()).add(chunk.label)
                 used.setdefault(word, set()).update(users)
-        return [(word, self.about(word, defined[word]), defined[word], used[word] - defined[word])
+        for word, labels in defined.items():
+            about[word] = self.about(word, labels)
+        for name in self.names:
+            if "::" not in name.full and not name.word.startswith("operator"):
+                continue  # defined by the author
+            if chunk := self.chunk_at(name):
+                defined.setdefault(name.full, set()).add(chunk.label)
+                about[name.full] = about.get(name.full) or comment_at(name.line - chunk.line, chunk.text.split("\n"))
+        return [(word, about[word] or self.place_of(word, defined[word]), defined[word], used.get(word, set()) - defined[word])
                 for word in sorted(defined, key=lambda word: (word.lower(), word))]
 
+    def chunk_at(self, name):
+        """The chunk that declares a public name."""
+        for chunk in self.chunks:
+            if chunk.chapter.path.endswith(name.path) and 0 <= name.line - chunk.line <= chunk.text.count("\n"):
+                return chunk
+        return None
 
     def about(self, word, labels):
-        """What an identifier is: the first sentence of the comment at its declaration, or the name of its chunk."""
-        chunks = [self.by_label[label] for label in self.ordered(labels)]
-        for chunk in chunks:
-            if comment := comment_on(word, chunk.text.split("\n")):
-                return comment
-        return noweb.plain(chunks[0].name)
+        """What an identifier is: the first sentence of the comment at its declaration."""
+        comments = (comment_on(word, self.by_label[label].text.split("\n")) for label in self.ordered(labels))
+        return next((comment for comment in comments if comment), "")
+
+    def place_of(self, word, labels):
+        """What an identifier without a comment is: a part of what its chunk is about."""
+        chunk = self.by_label[self.ordered(labels)[0]]
+        return noweb.plain(chunk.name)
 
 
 def comment_on(word, lines):
     """The first sentence of the /// comment above or beside the declaration of a word; nothing if there is none."""
     whole = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)")
     for place, line in enumerate(lines):
-        if not whole.search(line.split("//")[0]):
-            continue
-        beside = re.search(r"///<?\s*(.*)", line)
-        above = place
-        while above and re.match(r"\s*(template|requires|\[\[)", lines[above - 1]):
-            above -= 1
-        comment = [beside[1]] if beside else []
-        while not beside and above and (note := re.match(r"\s*///\s?(.*)", lines[above - 1])):
-            comment.insert(0, note[1].strip())
-            above -= 1
-        if comment and comment[0]:
-            comment = [" ".join(comment).split(" @param")[0]]
-            return re.split(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])", " ".join(comment))[0].rstrip(".;: ")
+        if whole.search(line.split("//")[0]):
+            if comment := comment_at(place, lines):
+                return comment
     return ""
+
+
+def comment_at(place, lines):
+    """The first sentence of the /// comment above or beside a line; nothing if there is none."""
+    beside = re.search(r"//[/<]*\s*(.*)", lines[place].replace("https://", ""))
+    above = place
+    while above and re.match(r"\s*(template|requires|\[\[)", lines[above - 1]):
+        above -= 1
+    comment = [beside[1]] if beside else []
+    while not beside and above and (note := re.match(r"\s*///\s?(.*)", lines[above - 1])):
+        comment.insert(0, note[1].strip())
+        above -= 1
+    if not comment or not comment[0]:
+        return ""
+    text = " ".join(comment).split(" @param")[0]
+    return re.split(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])", text)[0].rstrip(".;: ")
 
 
 class HtmlListing(Listing):
@@ -243,4 +266,4 @@ class TexListing(Listing):
 def table(head, rows):
     cells = "".join(f'<th scope="col">{title}</th>' for title in head)
     body = "\n".join(rows)
-    return f'<table class="index">\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>'
+    return f'<div class="index-scroll"><table class="index">\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table></div>'

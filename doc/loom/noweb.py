@@ -26,6 +26,7 @@ class Chunk:
         self.links = {}        # identifier -> label of the chunk that defines it
         self.defines = []      # (identifier, labels of the chunks that use it)
         self.number = 0        # in the order of the book, from 1
+        self.line = 0          # of its chapter, where its first line of code stands
         self.pieces = []       # all chunks of this name, in order
 
 
@@ -36,6 +37,7 @@ class Chapter:
         self.path = path
         self.parts = [""]
         self.chunks = []
+        self.lines = 0  # read so far
 
     def latex(self):
         """The prose, line for line; a chunk is \\litchunk{label} and as many empty lines as it has of code."""
@@ -88,6 +90,10 @@ class Reader:
         else:
             parts.append(latex)
 
+    def next_line(self):
+        self.write("\n")
+        self.chapters[-1].lines += 1
+
     def on_file(self, path):
         self.chapters.append(Chapter(path))
 
@@ -99,6 +105,7 @@ class Reader:
 
     def on_defn(self, name):
         self.chunk.name = name
+        self.chunk.line = self.chapters[-1].lines + 2
         self.chapters[-1].parts.append(self.chunk)
         self.chapters[-1].chunks.append(self.chunk)
 
@@ -120,7 +127,7 @@ class Reader:
     def on_nl(self, _):
         if not self.inside:
             return
-        self.write("\n")
+        self.next_line()
         if self.chunk and not self.defining:
             self.chunk.text += "\n"
         self.defining = False
@@ -154,7 +161,7 @@ class Reader:
         elif what == "use" and self.quoting:
             self.link = self.reference
         elif what == "nl":
-            self.write("\n")
+            self.next_line()
         elif what == "isused":
             self.users.append(value)
         elif what == "defitem" and self.chunk:

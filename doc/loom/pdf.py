@@ -53,7 +53,7 @@ class PdfBook(book.Book):
 
     def __init__(self, options):
         super().__init__(options)
-        self.listings = listing.TexListing(self.chapters)
+        self.listings = listing.TexListing(self.chapters, self.names)
         self.work = options.work
         os.makedirs(self.work, exist_ok=True)
 
@@ -72,7 +72,7 @@ class PdfBook(book.Book):
         self.links.check(self.pages())
         bibliography = self.links.bibliography_page()
         for page in self.pages() + [bibliography]:
-            self.links.substitute(page)
+            self.substitute(page)
         figures = self.figures()
         for page in self.pages():
             latex = re.sub(r"\\litfigure\{([^}]*)\}", lambda match: self.figure(match[1], figures[match[1]][0]), page.latex)

@@ -22,6 +22,7 @@ import string
 from html import escape, unescape
 
 import book
+import finder
 import latexml
 import listing
 import references
@@ -34,6 +35,8 @@ FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular
          "/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-bolditalic.otf",
          "/usr/share/texmf/fonts/opentype/public/tex-gyre-math/texgyrepagella-math.otf"]
 
+INDEXES = {"chunks": "Chunks", "identifiers": "Identifiers"}
+
 # ---------------------------------------------------------------- from LaTeXML's HTML to a page's body
 class Finisher:
     """Fills the holes in LaTeXML's HTML and makes it ours."""
@@ -43,6 +46,8 @@ class Finisher:
     HEADING = re.compile(r'(<section id="([^"]*)" class="ltx_(\w+)[^"]*">\s*)<h\d( class="ltx_title[^"]*")>(.*?)</h\d>',
                          re.DOTALL)
     FIGURE = re.compile(r'<span class="ltx_text lit-figure">([^<]*)</span>')
+    TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
+    LONG_FORMULA = re.compile(r'<math[^>]*alttext="[^"]{46,}" display="inline".*?</math>', re.DOTALL)
     PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
     PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
@@ -55,10 +60,14 @@ class Finisher:
         fill = lambda match: self.listings.chunk(self.chunks[match[1]], self.links.anchors[match[1]][1])
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
+        # what may be wider than a phone scrolls by itself
+        html = self.TABLE.sub(lambda table: f'<div class="scroll">{table[0]}</div>', html)
+        html = self.LONG_FORMULA.sub(lambda formula: f'<span class="long">{formula[0]}</span>', html)
         html = re.sub(r'\s*<span class="ltx_tag ltx_tag_note">.*?</span>\s*', "", html)
         # the font's prime is raised already; raised again it would be small and high
         html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)
         html = self.PRIME_AND_INDEX.sub(r'<msub><mrow>\1<mo lspace="0" rspace="0">\3</mo></mrow>\2</msub>', html)
+        self.above = 0
         html = self.HEADING.sub(lambda match: self.heading(page, match), html)
         html = self.FIGURE.sub(lambda match: self.figure(page, match, html), html)
         page.body = self.resolve(page, html)
@@ -71,7 +80,8 @@ class Finisher:
             page.title = re.sub(r'<span class="ltx_tag[^>]*>.*?</span>', "", plain, flags=re.DOTALL).strip()
         elif kind == "section":
             page.sections.append((anchor, plain))
-        level = self.LEVELS.get(kind, 6)
+        level = min(self.LEVELS.get(kind, 6), self.above + 1)  # a paragraph may stand in a section or deeper
+        self.above = level if kind != "paragraph" else self.above
         mark = f'<a class="permalink" href="#{anchor}" title="a link to this place" aria-label="a link to this place">§</a>'
         source = ""
         if kind == "chapter":
@@ -98,7 +108,14 @@ class Finisher:
         return ("" if home is page else home.file) + "#" + anchor
 
     def resolve(self, page, html):
-        """Addresses of chunks, now that it is known on which page each stands."""
+        """Addresses of chunks and items, now that it is known on which page each stands."""
+        an_item = re.compile(r'<span class="ltx_text lit-item ([^"]*)">')
+        html = an_item.sub(r'<span class="lit-item" id="item-\1">', html)
+
+        def item(match):
+            return f'href="{"" if self.links.inventory is page else self.links.inventory.file}#item-{match[1]}"'
+        html = re.sub(r'href="item:([^"]*)"', item, html)
+
         def address(match):
             home, anchor = self.links.anchors[match[1]]
             return f'href="{"" if home == page.file else home}#{anchor}"'
@@ -121,7 +138,7 @@ class HtmlBook(book.Book):
 
     def __init__(self, options):
         super().__init__(options)
-        self.listings = listing.HtmlListing(self.chapters)
+        self.listings = listing.HtmlListing(self.chapters, self.names)
         with open(os.path.join(options.book, "page.html"), encoding="utf-8") as file:
             self.template = string.Template(file.read())
 
@@ -143,7 +160,7 @@ class HtmlBook(book.Book):
         self.back.append(self.links.bibliography_page())
         pages = self.pages()
         for page in pages:
-            self.links.substitute(page)
+            self.substitute(page)
         converter = latexml.Converter(self.options.work, self.options.book)
 
         def first(page):
@@ -175,12 +192,17 @@ class HtmlBook(book.Book):
         page.body = re.sub(r'<p id="([^"]*)" class="ltx_p lit-entry">(.*?)</p>', entry, page.body, flags=re.DOTALL)
 
     def add_indexes(self, finisher):
-        for name, title, table in (("chunks", "Chunks", self.listings.chunk_index()),
-                                   ("identifiers", "Identifiers", self.listings.identifier_index())):
+        tables = (self.listings.chunk_index(), self.listings.identifier_index())
+        for (name, title), table in zip(INDEXES.items(), tables):
             page = Page(name, "", "")
             page.title = title
             page.body = finisher.resolve(page, f"<h1>{title}</h1>\n{table}")
             self.back.insert(-1, page)
+
+    def search_page(self):
+        page = Page("search", "", "")
+        page.title, page.body = "Search", finder.PAGE
+        return page
 
     # ------------------------------------------------------------ layout
     def entry(self, page, current):
@@ -249,6 +271,11 @@ class HtmlBook(book.Book):
         for i, page in enumerate(pages):
             before, after = (pages[i - 1] if i else None), (pages[i + 1] if i + 1 < len(pages) else None)
             put(page.file, self.layout(page, before, after).encode())
+        search = self.search_page()
+        put(search.file, self.layout(search, None, None).encode())
+        put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES],
+                                            self.listings.identifiers()).encode())
+        copy("search.js", os.path.join(self.options.book, "search.js"))
         copy("book.css", os.path.join(self.options.book, "book.css"))
         for font in FONTS:
             if not os.path.exists(font):

@@ -1,0 +1,112 @@
+r"""Two tables of the book come from the program's report: the errata of the thesis, and its inventory.
+
+A chapter writes one line for each misprint, between \begin{errata} and \end{errata}:
+
+    \erratum{place}{as printed}{as derived}{effect}{ITEM/claim ITEM/claim}
+
+The evidence is what `malus reproduce` computed for these claims. A claim that
+is no erratum stops the book, and so does an erratum of the report that has no
+line. \inventory becomes the table of all items, each with its verdicts and a
+link to where it is computed.
+"""
+import json
+import os
+import re
+
+import noweb
+from problems import Problem, stop_if_any
+
+ERRATUM = re.compile(r"^\\erratum\{")
+ROW = re.compile(r'\{"([^"]+)", (\w+)\}')
+VERDICTS = ("reproduced", "erratum", "differs", "not testable")
+BEGIN_ERRATA = (r"{\footnotesize\begin{longtable}{p{0.12\textwidth}p{0.19\textwidth}p{0.19\textwidth}p{0.3\textwidth}p{0.13\textwidth}}"
+                r"\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
+BEGIN_ITEMS = (r"{\footnotesize\begin{longtable}{lp{0.38\textwidth}p{0.16\textwidth}rrrrp{0.2\textwidth}}"
+               r"\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
+END = r"\bottomrule\end{longtable}}"
+
+
+def plain(words):
+    """Words of the report as LaTeX."""
+    text = noweb.quote_latex(words).replace("-{}", "-").replace("<{}", "$<$").replace(">{}", "$>$")
+    return text.replace(r"\textquotesingle{}", "'").replace("|", r"\textbar{}")
+
+
+def arguments(line):
+    """The arguments of a macro that stands alone on a line."""
+    out, depth, begin = [], 0, 0
+    for place, character in enumerate(line):
+        if character == "{" and line[place - 1] != "\\":
+            depth += 1
+            if depth == 1:
+                begin = place + 1
+        elif character == "}" and line[place - 1] != "\\":
+            depth -= 1
+            if depth == 0:
+                out.append(line[begin:place])
+    return out
+
+
+class Verdicts:
+    """What the report says, for the pages that ask for it."""
+
+    def __init__(self, report):
+        path = os.path.join(report, "report.json")
+        self.items = []
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                self.items = json.load(file)["items"]
+        self.claims = {f"{item['id']}/{claim['name']}": claim for item in self.items for claim in item["claims"]}
+
+    def substitute(self, page, chapters, pages):
+        """Writes the tables into a page, line for line."""
+        if r"\begin{errata}" in page.latex:
+            self.errata(page)
+        if r"\inventory" in page.latex:
+            page.latex = re.sub(r"^\\inventory$", lambda _: self.inventory(page, chapters, pages), page.latex, flags=re.MULTILINE)
+
+    def errata(self, page):
+        problems, told, lines = [], set(), page.latex.split("\n")
+        for number, line in enumerate(lines, 1):
+            if not ERRATUM.match(line):
+                continue
+            parts = arguments(line)
+            if len(parts) != 5:
+                problems.append(Problem(page.source, number, r"\erratum wants five arguments: place, as printed, as derived, effect, claims"))
+                continue
+            place, printed, derived, effect, names = parts
+            evidence = []
+            for name in names.split():
+                claim = self.claims.get(name)
+                if not claim or claim["verdict"] != "erratum":
+                    problems.append(Problem(page.source, number, f"{name} is no erratum of the report"))
+                    continue
+                told.add(name)
+                said = f"{claim['ours']}; {claim['cause']}" if claim["printed"] and claim["cause"] else claim["ours"]
+                item = name.split("/")[0]
+                evidence.append(rf"\litto{{{item}}}{{{plain(name)}}}: {plain(said)}.")
+            lines[number - 1] = f"{place} & {printed} & {derived} & {' '.join(evidence)} & {effect} \\\\"
+        problems += [Problem(page.source, 0, f"the report has the erratum {name}, but no \\erratum tells it")
+                     for name, claim in self.claims.items() if claim["verdict"] == "erratum" and name not in told]
+        stop_if_any(problems)
+        page.latex = "\n".join(lines).replace(r"\begin{errata}", BEGIN_ERRATA).replace(r"\end{errata}", END)
+
+    def inventory(self, page, chapters, pages):
+        """All items of the report, in its order."""
+        homes = {word: chunk for chapter in chapters for chunk in chapter.chunks for word, _ in chunk.defines}
+        functions = {}
+        for chapter in chapters:
+            if chapter.path == page.source:
+                functions = {match[1]: match[2] for chunk in chapter.chunks for match in ROW.finditer(chunk.text)}
+        labels = {other.source: re.search(r"\\label\{(ch:[^}]*)\}", other.latex) for other in pages}
+        rows, problems = [], []
+        for item in self.items:
+            home = homes.get(functions.get(item["id"]))
+            if not home:
+                problems.append(Problem(page.source, 0, f"item {item['id']} leads to no function that an `@ %def` defines"))
+                continue
+            counts = " & ".join(str(item["counts"].get(verdict) or "") for verdict in VERDICTS)
+            rows.append(rf"\lititem{{{item['id']}}}{{{item['id']}}} & {plain(item['title'])} & {plain(item['place'])} & {counts} & "
+                        rf"chapter~\ref{{{labels[home.chapter.path][1]}}}, \litlink{{{home.label}}}{{code}} \\")
+        stop_if_any(problems)
+        return BEGIN_ITEMS + " ".join(rows) + END
