@@ -12,14 +12,16 @@ PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
 BOOK    := latexml universal-ctags fonts-texgyre fonts-texgyre-math
-# other people's readers of our cubes, for the tests alone
-TEST    := python3-gdal python3-spectral
+# other people's readers of our cubes, and a judge of HTML, for the tests alone
+TEST    := python3-gdal python3-spectral tidy
+# the tests look at every page in it; where it cannot be had they say so
+BROWSER := chromium
 
 # What the book on paper wants besides; asked for only by make pdf.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fuzz fresh-machine clean help
-.PHONY: need-program need-book need-test need-paper
+.PHONY: need-program need-book need-test need-browser need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
@@ -29,8 +31,8 @@ all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-test $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's as well
-	@cmake --build $(BUILD) -j $(JOBS)
+test: need-test need-browser $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
+	@cmake --build $(BUILD) -j $(JOBS) --target all everything
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
 book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
@@ -62,19 +64,19 @@ dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled 
 sanitize: need-test ## all tests under the address and undefined-behaviour sanitizers
 	@cmake --preset sanitize $(GENERATOR) >/dev/null
 	@cmake --build build-sanitize -j $(JOBS)
-	@ctest --test-dir build-sanitize -j $(JOBS) --output-on-failure --progress
+	@ctest --test-dir build-sanitize -LE book -j $(JOBS) --output-on-failure --progress
 
 clang: need-test ## all tests as compiled by clang++
 	@$(NEED) clang
 	@cmake --preset clang $(GENERATOR) >/dev/null
 	@cmake --build build-clang -j $(JOBS)
-	@ctest --test-dir build-clang -j $(JOBS) --output-on-failure --progress
+	@ctest --test-dir build-clang -LE book -j $(JOBS) --output-on-failure --progress
 
 coverage: need-test ## which lines of nw/ the tests reach
 	@cmake --preset coverage $(GENERATOR) >/dev/null
 	@cmake --build build-coverage -j $(JOBS)
 	@find build-coverage -name '*.gcda' -delete
-	@ctest --test-dir build-coverage -j $(JOBS) --output-on-failure --progress
+	@ctest --test-dir build-coverage -LE book -j $(JOBS) --output-on-failure --progress
 	@doc/loom/coverage.py build-coverage
 
 FUZZ_SECONDS ?= 600
@@ -108,6 +110,9 @@ need-book:
 
 need-test:
 	@$(NEED) $(PROGRAM) $(BOOK) $(TEST)
+
+need-browser:
+	@$(NEED) $(BROWSER) || echo "The book's pages are not looked at in a browser."
 
 need-paper:
 	@$(NEED) $(PROGRAM) $(BOOK) $(PAPER)
