@@ -136,7 +136,7 @@ TEST(SkyScenesInvariant, TheShippedSceneUnderThePolarisedSky) {
                                 .string();
   const CDFrame frame = renderScene(readScene(
       scene,
-      R"({"sensor": {"width": 16, "height": 16, "focal_length_mm": 15, "pixel_pitch_um": 625}, "radiometry": {"rays": [19, 1]}})"));
+      R"({"sensor": {"width": 16, "height": 16, "focal_length_mm": 15, "pixel_pitch_um": 625}, "radiometry": {"rays": [46, 1]}})"));
   double linear[2]{}, circular[2]{};
   for (std::size_t y = 0; y < frame.height; ++y)
     for (std::size_t x = 0; x < frame.width; ++x)
