@@ -1,11 +1,21 @@
 // What is measured on pictures of scenes (nw/thesis/Pictures.nw).
 #include "thesis/Pictures.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "Items.hpp"
+#include "Program.hpp"
+#include "imaging/CDImage.hpp"
+#include "program/Render.hpp"
 
 using namespace malus;
 
@@ -85,4 +95,108 @@ TEST(PicturesInvariant, PanelsBecomeTwoTablesAndAPicture) {
   EXPECT_EQ(item.tables()[0].second.rows(), 2u);
   EXPECT_EQ(item.tables()[1].second.rows(), 30u);
   EXPECT_EQ(item.pictures().front().script, "images");
+}
+
+namespace {
+/// What `malus render scenes/NAME.json` writes with the size that the figures have.
+CDCube renderedFromOutside(const Scratch& scratch, const std::string& name, int pixels,
+                           const std::string& arguments = "") {
+  std::filesystem::copy(scenesDirectory(), scratch.path,
+                        std::filesystem::copy_options::recursive |
+                            std::filesystem::copy_options::overwrite_existing);
+  const std::string file = name + ".json";
+  nlohmann::json scene = nlohmann::json::parse(contents(scratch / file), nullptr, true, true);
+  scene["sensor"]["width"] = scene["sensor"]["height"] = pixels;
+  scene["sensor"]["pixel_pitch_um"] = 10000.0 / pixels;
+  put(scratch / file, scene.dump());
+  const Outcome run = malusIn(scratch.path, "render " + file + " --out out " + arguments);
+  EXPECT_EQ(run.code, 0) << run.err;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scratch / "out")) {
+    const std::string found = entry.path().filename().string();
+    if (found.ends_with(".img") && found.find("truth") == std::string::npos)
+      return readCube(entry.path());
+  }
+  throw std::runtime_error("malus render left no cube");
+}
+
+/// Values of a cube that are not, to the bit, those of the pictures in single precision.
+std::size_t differentBits(const CDCube& cube, const std::vector<CDStokesImage>& bands) {
+  std::size_t different = 0;
+  const std::size_t channels = 4 * bands.size();
+  for (std::size_t pixel = 0; pixel < bands[0].size(); ++pixel)
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      const auto ours = static_cast<float>(bands[channel / 4].stokes[channel % 4][pixel]);
+      different += std::memcmp(&cube.data[pixel * channels + channel], &ours, sizeof ours) != 0;
+    }
+  return different;
+}
+}  // namespace
+
+// The chapters draw what the user's program makes of the same file: one scene of each kind, the moving ones
+// in a frame that is not the first.
+TEST(PicturesInvariant, AnItemsPictureIsWhatMalusRenderMakes) {
+  struct Case {
+    const char* name;
+    std::size_t frame;
+  };
+  for (const auto& [name, frame] : {Case{"chunky-bar-lambertian", 0},
+                                    {"chunky-bar-copper", 0},
+                                    {"chunky-bar-sky", 0},
+                                    {"flight-nadir", 6},
+                                    {"flight-staring", 1},
+                                    {"rochester-day", 9}}) {
+    const Scratch scratch;
+    const CDScene scene = chunkyScene(name, 48);
+    const std::string frames =
+        scene.platform.frames() > 1 ? fmt::format("--frames {0}:{0}", frame) : "";
+    const CDCube cube = renderedFromOutside(scratch, name, 48, frames);
+    const std::vector<CDStokesImage> bands = renderBands(scene, frame);
+    ASSERT_EQ(cube.data.size(), 48 * 48 * 4 * bands.size()) << name;
+    EXPECT_EQ(differentBits(cube, bands), 0u) << name;
+    CDScene other = scene;  // negative control
+    other.radiometry.seed = 2;
+    EXPECT_GT(differentBits(cube, renderBands(other, frame)), 0u) << name;
+  }
+}
+
+TEST(PicturesInvariant, APlateIsWhatMalusRenderMakes) {
+  const Scratch scratch;
+  const Outcome run =
+      malusIn(scratch.path,
+              "render '" + (scenesDirectory() / "flat-plate.json").string() + "' --out out");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const CDCube cube = readCube(scratch / "out/flat-plate.img");
+  const CDScene scene = shippedScene("flat-plate");
+  ASSERT_EQ(cube.data.size(), 128 * 128 * 4u);
+  EXPECT_EQ(differentBits(cube, renderBands(scene)), 0u);
+  const CDScene rougher =  // negative control
+      shippedScene("flat-plate", R"({"materials": {"plate": {"sigma": 0.21}}})");
+  EXPECT_GT(differentBits(cube, renderBands(rougher)), 0u);
+}
+
+TEST(PicturesIdentity, APatchChangesASceneAndNothingElse) {
+  const CDScene scene = chunkyScene("chunky-bar-copper", 32),
+                patched =
+                    chunkyScene("chunky-bar-copper", 32, R"({"radiometry": {"rays": [7]}})");
+  EXPECT_EQ(patched.radiometry.rays, std::vector<int>{7});
+  EXPECT_NE(scene.radiometry.rays, patched.radiometry.rays);
+  EXPECT_EQ(patched.sensor.geometry().width, 32u);
+  EXPECT_EQ(patched.radiometry.seed, scene.radiometry.seed);
+  // ten metres of ground from fifteen metres, whatever the number of pixels
+  for (const int pixels : {32, 128, 256})
+    EXPECT_NEAR(
+        pixels / chunkyScene("chunky-bar-copper", pixels).sensor.geometry().focal_length_px,
+        10.0 / 15, 1e-12);
+  EXPECT_THROW(chunkyScene("chunky-bar-copper", 32, R"({"sensr": {}})"), CDInputError);
+  EXPECT_THROW(shippedScene("no-such-scene"), CDInputError);
+}
+
+TEST(PicturesIdentity, TopsAndSidesAreToldByName) {
+  std::array<int, 3> found{};
+  const CDScene scene = chunkyScene("chunky-bar-copper", 16);
+  for (const std::string& facet : scene.world.geometry.facetNames())
+    ++found[isTop(facet) ? 0 : isSide(facet) ? 1 : 2];
+  EXPECT_EQ(found, (std::array{4, 16, 1}));  // four chunks of five faces, and the ground
+  EXPECT_FALSE(isOfChunks("1"));             // negative control
+  for (const char* top : chunk_tops) EXPECT_TRUE(isTop(top) && !isSide(top) && isOfChunks(top));
 }

@@ -156,3 +156,11 @@ TEST(SceneTextIdentity, APatchChangesValuesAndKeepsPlaces) {
   EXPECT_EQ(node["rays"].place().column, 25);
   EXPECT_EQ(node["sampling"].place().column, 16);  // nearest value around it
 }
+
+TEST(SceneTextIdentity, AKeyThatOnlyAPatchHasStandsWhereTheSceneBegins) {
+  CDSceneText text("{\"radiometry\": {}}", "s.json", ".");
+  text.patch("{\"sensr\": {\"width\": 3}, \"radiometry\": {\"seed\": 1}}");
+  EXPECT_EQ(text.root()["sensr"].place().column, 1);  // a name without a dot has no parent but the root
+  EXPECT_EQ(text.root().keyPlace("sensr").column, 1);
+  EXPECT_EQ(text.root()["radiometry"]["seed"].place().column, 16);  // negative control
+}

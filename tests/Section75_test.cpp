@@ -2,9 +2,11 @@
 #include "thesis/Section75.hpp"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,12 +18,27 @@
 using namespace malus;
 
 namespace {
-CDThesisScene small(CDChunks chunks, std::vector<int> rays) {
-  CDThesisScene scene = chunkyBar(chunks);
-  scene.pixels = 32;
+CDScene small(const std::string& name, std::vector<int> rays) {
+  CDScene scene = chunkyScene(name, 32);
   scene.radiometry.rays = std::move(rays);
   return scene;
 }
+
+/// scenes/ with one text of a file replaced by another, found by the program while this lives.
+struct OtherScenes : Scratch {
+  OtherScenes(const std::string& file, const std::string& from, const std::string& to) {
+    std::filesystem::copy(scenesDirectory(), path,
+                          std::filesystem::copy_options::recursive |
+                              std::filesystem::copy_options::skip_symlinks);
+    std::string text = contents(path / file);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from << " in " << file;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+    put(path / file, text);
+    ::setenv("MALUS_SCENES", path.c_str(), 1);
+  }
+  ~OtherScenes() { ::unsetenv("MALUS_SCENES"); }
+};
 }  // namespace
 
 TEST(Section75Published, RoughnessesAreThoseOfTable75) {
@@ -33,7 +50,19 @@ TEST(Section75Published, RoughnessesAreThoseOfTable75) {
 TEST(Section75Published, NegativeControlAnotherRoughnessIsSeen) {
   const Corrupted table("T7.5.csv", "5,0.3", "5,0.25");
   EXPECT_EQ(named(ran("T7.5", reproduceT75, table.data), CDVerdict::differs),
-            (std::set<std::string>{"sigma.5", "file.5"}));
+            (std::set<std::string>{"sigma.5", "elsewhere.5"}));
+}
+
+TEST(Section75Published, NegativeControlARoughnessChangedInASceneFileIsSeen) {
+  const std::string was = R"("sigma": 0.3)", is = R"("sigma": 0.4)";
+  {
+    const OtherScenes scenes("chunky-bar-copper.json", was, is);
+    EXPECT_EQ(named(ran("T7.5", reproduceT75), CDVerdict::differs),
+              (std::set<std::string>{"sigma.5"}));
+  }
+  const OtherScenes scenes("rochester-day.json", was, is);
+  EXPECT_EQ(named(ran("T7.5", reproduceT75), CDVerdict::differs),
+            (std::set<std::string>{"elsewhere.5"}));
 }
 
 TEST(FlatPlatePublished, TheTracedColumnIsMet) {
@@ -49,19 +78,19 @@ TEST(FlatPlatePublished, NegativeControlAChangedDigitIsSeen) {
 }
 
 TEST(Section75Invariant, APictureIsTheSameWheneverItIsMade) {
-  const CDThesisScene scene = small(CDChunks::copper, {21, 1});
+  const CDScene scene = small("chunky-bar-copper", {21, 1});
   const CDStokesImage one = renderImage(scene), two = renderImage(scene);
   EXPECT_EQ(one.stokes, two.stokes);
   EXPECT_EQ(one.facet, two.facet);
   EXPECT_EQ(one.rays, two.rays);
-  CDThesisScene other = scene;  // negative control
+  CDScene other = scene;  // negative control
   other.radiometry.seed = 2;
   EXPECT_NE(renderImage(other).stokes, one.stokes);
 }
 
 TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
   // rho/pi (E cos 30 + 0.05 pi); the grid of 1000 rays sums the cosine to some 1e-3
-  const CDStokesImage image = renderImage(small(CDChunks::lambertian, {1001}));
+  const CDStokesImage image = renderImage(small("chunky-bar-lambertian", {1001}));
   for (const auto& [top, reflectance] : {std::pair{"5.top", 0.6}, {"2.top", 0.2}}) {
     const double expected = reflectance / std::numbers::pi *
                             (std::cos(std::numbers::pi / 6) + 0.05 * std::numbers::pi);
@@ -73,8 +102,8 @@ TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
 }
 
 TEST(Section75Identity, OneReflectionMakesNoCircularLight) {
-  const CDStokesImage image = renderImage(small(CDChunks::copper, {21}));
+  const CDStokesImage image = renderImage(small("chunky-bar-copper", {21}));
   for (const double S3 : image.stokes[3]) ASSERT_EQ(S3, 0);
-  const CDStokesImage twice = renderImage(small(CDChunks::copper, {21, 1}));
+  const CDStokesImage twice = renderImage(small("chunky-bar-copper", {21, 1}));
   EXPECT_NE(twice.stokes[3], image.stokes[3]);  // negative control
 }
