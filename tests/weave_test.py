@@ -4,6 +4,7 @@
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
 """
+import json
 import os
 import re
 import shutil
@@ -15,10 +16,13 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 LOOM = os.path.join(ROOT, "doc", "loom")
 sys.path.insert(0, LOOM)
+import book  # noqa: E402
 import latexml  # noqa: E402
 import listing  # noqa: E402
 import noweb  # noqa: E402
+import problems  # noqa: E402
 import references  # noqa: E402
+import verdicts  # noqa: E402
 from problems import Problem  # noqa: E402
 
 FIRST = r"""\chapter{Reflection}\label{ch:first}
@@ -90,7 +94,7 @@ class Workshop(unittest.TestCase):
         done = subprocess.run(
             [os.path.join(LOOM, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
              os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/matter/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/matter/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -160,8 +164,10 @@ class WovenBook(Workshop):
         self.assertIn("Edit this chapter: <code>nw/light/first.nw</code>", self.first)
 
     def test_needs_no_script_and_no_network(self):
-        pages = "".join(self.get(name) for name in os.listdir(os.path.join(self.dir, "book")) if name.endswith(".html"))
-        self.assertNotIn("<script", pages)
+        """Only the search has scripts, in files of its own."""
+        names = [name for name in os.listdir(os.path.join(self.dir, "book")) if name.endswith(".html")]
+        pages = "".join(map(self.get, names))
+        self.assertEqual([name for name in names if "<script" in self.get(name)], ["search.html"])
         self.assertNotRegex(pages, r'src="https?:')
 
     def test_a_page_that_no_longer_belongs_to_the_book_is_removed(self):
@@ -207,6 +213,10 @@ class BrokenBook(Workshop):
     def test_latex_command_that_does_not_exist_is_told_with_its_line(self):
         self.put("nw/light/first.nw", FIRST.replace(r"\section{The code}", r"\section{The code} \sectoin"))
         self.fails("nw/light/first.nw:6:", r"\sectoin")
+
+    def test_public_name_that_the_index_lacks(self):
+        self.put("generated/light/first.hpp", '#line 9 "nw/light/first.nw"\nnamespace malus {\nclass reflect_it;\ndouble orphan(int n);\n}\n')
+        self.fails("nw/light/first.nw:11: orphan is public, but no `@ %def`")
 
     def test_value_in_a_comment_is_not_asked_for(self):
         self.put("nw/light/first.nw", FIRST.replace("it is zero.", "it is zero. % \\val{nothing}"))
@@ -281,6 +291,34 @@ class PrintedBook(Workshop):
 
     def test_latex_error_is_told_with_the_line_of_the_chapter(self):
         self.fails(r"\section{The code}", r"\section{The code} \sectoin", "nw/light/first.nw:6:", "Undefined control sequence")
+
+
+class Errata(unittest.TestCase):
+    """The table of errata: what the report has and what the chapter tells must be the same."""
+
+    CLAIM = {"name": "a", "printed": "1", "ours": "2.0", "cause": "should read 2", "verdict": "erratum"}
+    ROW = r"\erratum{eq.~1}{$x_{1}$}{$x_{2}$}{index}{N8/a}"
+
+    def table(self, *rows, verdict="erratum"):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "report.json"), "w", encoding="utf-8") as file:
+                json.dump({"items": [{"id": "N8", "claims": [dict(self.CLAIM, verdict=verdict)]}]}, file)
+            page = book.Page("errata", "errata.nw", "\n".join(("\\begin{errata}", *rows, "\\end{errata}")))
+            verdicts.Verdicts(folder).errata(page)
+        return page.latex
+
+    def test_a_row_has_the_evidence_of_its_claim_and_keeps_its_line(self):
+        lines = self.table(self.ROW).split("\n")
+        self.assertEqual(len(lines), 3)
+        self.assertEqual(lines[1], r"eq.~1 & $x_{1}$ & $x_{2}$ & \litto{N8}{N8/a}: 2.0; should read 2. & index \\")
+
+    def test_negative_controls(self):
+        for rows, verdict, complaint in (((), "erratum", "the report has the erratum N8/a"),
+                                         ((self.ROW,), "differs", "errata.nw:2: N8/a is no erratum"),
+                                         ((self.ROW, self.ROW.replace("N8/a", "N8/b")), "erratum", "errata.nw:3: N8/b is no erratum"),
+                                         ((self.ROW, r"\erratum{a}{b}{N8/a}"), "erratum", "five arguments")):
+            with self.subTest(complaint), self.assertRaisesRegex(problems.Problems, complaint):
+                self.table(*rows, verdict=verdict)
 
 
 class Parts(unittest.TestCase):

@@ -140,7 +140,7 @@ def comment_on(word, lines):
 
 def comment_at(place, lines):
     """The first sentence of the /// comment above or beside a line; nothing if there is none."""
-    beside = re.search(r"//[/<]*\s*(.*)", lines[place].replace("https://", ""))
+    beside = re.search(r"///<?\s*(.*)", lines[place])
     above = place
     while above and re.match(r"\s*(template|requires|\[\[)", lines[above - 1]):
         above -= 1

@@ -19,10 +19,11 @@ from problems import Problem, stop_if_any
 ERRATUM = re.compile(r"^\\erratum\{")
 ROW = re.compile(r'\{"([^"]+)", (\w+)\}')
 VERDICTS = ("reproduced", "erratum", "differs", "not testable")
-BEGIN_ERRATA = (r"{\footnotesize\begin{longtable}{p{0.12\textwidth}p{0.19\textwidth}p{0.19\textwidth}p{0.3\textwidth}p{0.13\textwidth}}"
-                r"\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
-BEGIN_ITEMS = (r"{\footnotesize\begin{longtable}{lp{0.38\textwidth}p{0.16\textwidth}rrrrp{0.2\textwidth}}"
-               r"\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
+ROUGH = r">{\raggedright\arraybackslash}p"  # a narrow column, its right edge as it comes
+BEGIN_ERRATA = (r"{\litsmall\begin{longtable}{" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.12, .19, .19, .3, .13))
+                + r"}\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
+BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.35\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
+               + r"}\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
 END = r"\bottomrule\end{longtable}}"
 
 

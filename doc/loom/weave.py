@@ -47,7 +47,7 @@ class Finisher:
                          re.DOTALL)
     FIGURE = re.compile(r'<span class="ltx_text lit-figure">([^<]*)</span>')
     TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
-    LONG_FORMULA = re.compile(r'<math[^>]*alttext="[^"]{46,}" display="inline".*?</math>', re.DOTALL)
+    LONG_FORMULA = re.compile(r'<math[^>]*alttext="(?!\\displaystyle)[^"]{46,}" display="inline".*?</math>', re.DOTALL)
     PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
     PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
@@ -61,7 +61,7 @@ class Finisher:
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
         # what may be wider than a phone scrolls by itself
-        html = self.TABLE.sub(lambda table: f'<div class="scroll">{table[0]}</div>', html)
+        html = self.TABLE.sub(self.scroll, html)
         html = self.LONG_FORMULA.sub(lambda formula: f'<span class="long">{formula[0]}</span>', html)
         html = re.sub(r'\s*<span class="ltx_tag ltx_tag_note">.*?</span>\s*', "", html)
         # the font's prime is raised already; raised again it would be small and high
@@ -72,6 +72,11 @@ class Finisher:
         html = self.FIGURE.sub(lambda match: self.figure(page, match, html), html)
         page.body = self.resolve(page, html)
         page.title = page.title or page.name
+
+    @staticmethod
+    def scroll(table):
+        kind = " errata" if "as derived" in table[0] else " formula" if "ltx_eqn_table" in table[0][:100] else ""
+        return f'<div class="scroll{kind}">{table[0]}</div>'
 
     def heading(self, page, match):
         before, anchor, kind, classes, title = match.groups()
@@ -109,7 +114,7 @@ class Finisher:
 
     def resolve(self, page, html):
         """Addresses of chunks and items, now that it is known on which page each stands."""
-        an_item = re.compile(r'<span class="ltx_text lit-item ([^"]*)">')
+        an_item = re.compile(r'<span class="ltx_text lit-item ([^"]*)"[^>]*>')
         html = an_item.sub(r'<span class="lit-item" id="item-\1">', html)
 
         def item(match):
