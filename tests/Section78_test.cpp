@@ -3,8 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Items.hpp"
+#include "thesis/Pictures.hpp"
 
 using namespace malus;
 
@@ -38,4 +45,70 @@ TEST(Section78Invariant, TheSunTurnsByFifteenDegreesAnHour) {
     EXPECT_NEAR(hourAngle(at) - hourAngle(day[0]), 15.0 * (at.hour - 7), 0.1);
   EXPECT_GT(std::abs(hourAngle(day[11]) - hourAngle(day[0]) - 15.0 * 10.9),
             0.1);  // negative control
+}
+
+namespace {
+/// Largest angle between the suns of a scene's frames and those of the chapter [rad].
+double largestDifference(const CDScene& scene) {
+  double most = 0;
+  const std::vector<CDHourOfDay> day = rochesterDay();
+  for (std::size_t hour = 0; hour < scene.platform.frames(); ++hour) {
+    CDWorld moved = scene.world;
+    scene.move_sun(moved, scene.platform.time_s(hour));
+    most = std::max(most, cross(moved.sun->to_sun, day.at(hour).sun.toSun()).getLength());
+  }
+  return most;
+}
+}  // namespace
+
+TEST(Section78Identity, TheSceneFileHasTheSunsOfTheChapter) {
+  const CDScene scene = chunkyScene("rochester-day", 16);
+  ASSERT_EQ(scene.platform.frames(), rochesterDay().size());
+  EXPECT_LT(largestDifference(scene), 1e-7);  // Julian days resolve 40 microseconds
+  EXPECT_GT(largestDifference(chunkyScene(    // negative control: a minute later
+                "rochester-day", 16, R"({"sun": {"time": "2001-06-04T07:01:00-04:00"}})")),
+            1e-3);
+}
+
+// Elementary: a Lambertian top under sun and uniform sky has the radiance rho/pi (E cos z + pi L).
+TEST(Section78Identity, AMattTopFollowsTheCosineOfTheSun) {
+  const CDScene scene = chunkyScene(
+      "rochester-day", 32,
+      R"({"materials": {"copper-010": {"model": "lambertian", "reflectance": 0.2, "n": null, "k": null, "sigma": null}},
+          "radiometry": {"rays": [401]}})");
+  const std::vector<CDHourOfDay> day = rochesterDay();
+  for (std::size_t hour = 0; hour < day.size(); ++hour) {
+    const CDStokesImage image = renderImage(scene, hour);
+    const double top = meanOver(image.stokes[0], insideOf(image, "2.top"));
+    const auto expected = [&](std::size_t at) {
+      return 0.2 / std::numbers::pi *
+             (std::cos(day[at].sun.zenith_rad) + 0.05 * std::numbers::pi);
+    };
+    // the grid sums the cosine to a few parts in a thousand (chapter CDRadiometry)
+    EXPECT_NEAR(top, expected(hour), 3e-3 * expected(hour)) << hour;
+    if (hour < 3) {  // negative control: the sun of the next hour
+      EXPECT_GT(std::abs(top - expected(hour + 1)), 3e-3 * expected(hour)) << hour;
+    }
+  }
+}
+
+TEST(Section78Published, TheDayShowsWhatTheThesisSaw) {
+  for (const auto& [id, function] :
+       {std::pair{"F7.39", &reproduceF739}, std::pair{"F7.40", &reproduceF740},
+        std::pair{"F7.41", &reproduceF741}, std::pair{"F7.42", &reproduceF742},
+        std::pair{"F7.43", &reproduceF743}, std::pair{"F7.44", &reproduceF744}}) {
+    const CDItem item = ran(id, function);
+    EXPECT_TRUE(named(item, CDVerdict::differs).empty()) << id;
+    EXPECT_GE(named(item, CDVerdict::reproduced).size(), 1u) << id;
+  }
+}
+
+// What the sentences compare: smooth copper shines shortly, rough copper long, and the DoLP reverses it.
+TEST(Section78Regression, TheTrendIsReversedInTheDoLP) {
+  auto bright = valuesOf(ran("F7.40", reproduceF740)),
+       polarized = valuesOf(ran("F7.44", reproduceF744));
+  const auto number = [](auto& values, const char* name) { return std::stod(values[name]); };
+  EXPECT_GT(number(bright, "variation2"), number(bright, "variation5"));
+  EXPECT_LT(number(bright, "hours2"), number(bright, "hours5"));
+  EXPECT_LT(number(polarized, "variation2"), number(polarized, "variation5"));
 }
