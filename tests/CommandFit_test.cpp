@@ -1,0 +1,112 @@
+// malus fit, from outside (nw/program/CommandFit.nw).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "Program.hpp"
+#include "light/CDTable.hpp"
+
+using malus::CDTable;
+
+namespace {
+CDTable tableOf(const std::string& text) {
+  std::istringstream stream(text);
+  return CDTable::parse(stream, "answer");
+}
+
+/// Geometries about three mirror directions, in the plane of incidence.
+std::string geometries() {
+  std::string text = "theta_i_deg,theta_r_deg,phi_deg\n";
+  for (const int i : {20, 45, 65})
+    for (int r = i - 15; r <= i + 15; r += 5)
+      text += std::to_string(i) + "," + std::to_string(r) + ",180\n";
+  return text;
+}
+}  // namespace
+
+// Samples without noise; the numbers of the CSV have 17 digits. What is left is the table of the
+// diffuse term (1e-5 absolute) and the differences.
+TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
+  const Scratch scratch;
+  put(scratch / "angles.csv", geometries());
+  const Outcome brdf = malusIn(scratch.path,
+                               "brdf --model torrance-sparrow --param n=0.405 --param k=2.95 "
+                               "--param sigma=0.2 --geometries angles.csv --out plate.csv");
+  ASSERT_EQ(brdf.code, 0) << brdf.err;
+  const Outcome fit = malusIn(scratch.path, "fit --samples plate.csv --out fit.csv");
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_EQ(fit.out, "");
+  const CDTable answer = CDTable::read(scratch / "fit.csv");
+  ASSERT_EQ(answer.rows(), 1u);
+  EXPECT_NEAR(answer.number(0, "n"), 0.405, 1e-3);
+  EXPECT_NEAR(answer.number(0, "k"), 2.950, 1e-3);
+  EXPECT_NEAR(answer.number(0, "sigma"), 0.2, 1e-4);
+  EXPECT_NEAR(answer.number(0, "diffuse"), 1, 0.02);
+  EXPECT_GT(answer.number(0, "n_error"), 0);
+  EXPECT_EQ(answer.number(0, "samples"), 16 * 21);
+  // negative control: another plate is not this copper
+  malusIn(scratch.path,
+          "brdf --model torrance-sparrow --param n=0.45 --param k=2.95 --param sigma=0.21 "
+          "--geometries angles.csv --out other.csv");
+  const CDTable other = tableOf(malusIn(scratch.path, "fit --samples other.csv").out);
+  EXPECT_GT(other.number(0, "n"), 0.42);
+  EXPECT_GT(other.number(0, "sigma"), 0.205);
+}
+
+// Born and Wolf's formula at normal incidence, by hand: n = 1.5 gives R = 0.04; at 45 degrees
+// Rs = 0.0920134 and Rp = Rs^2. For n = 5/3 they are 0.0625, 0.1309819 and its square.
+TEST(CommandFitPublished, GlassByHandAndTwoWavelengths) {
+  const Scratch scratch;
+  put(scratch / "glass.csv",
+      "wavelength_nm,theta_i_deg,Rs,Rp\n500,0,0.04,0.04\n500,45,0.0920134,0.00846647\n"
+      "600,0,0.0625,0.0625\n600,45,0.1309819,0.0171563\n");
+  const Outcome fit = malusIn(
+      scratch.path, "fit --samples glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  const CDTable answer = tableOf(fit.out);
+  ASSERT_EQ(answer.rows(), 2u);
+  EXPECT_EQ(answer.cell(0, "wavelength_nm"), "500");
+  EXPECT_NEAR(answer.number(0, "n"), 1.5, 1e-4);                  // six printed digits
+  EXPECT_NEAR(answer.number(1, "n"), 5.0 / 3, 1e-4);              // R = (1/4)^2
+  EXPECT_GT(answer.number(1, "n") - answer.number(0, "n"), 0.1);  // negative control
+  EXPECT_EQ(answer.number(0, "k"), 0);
+  EXPECT_EQ(answer.number(0, "k_error"), 0);
+}
+
+TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
+  const Scratch scratch;
+  put(scratch / "none.csv", "theta_i_deg,Rs\n");
+  put(scratch / "nothing.csv", "theta_i_deg,label\n20,a\n");
+  put(scratch / "almost.csv", "theta_i_dg,Rs\n20,0.1\n");
+  put(scratch / "angle.csv", "theta_i_deg,Rs\n20,0.1\n90,0.1\n");
+  put(scratch / "text.csv", "theta_i_deg,Rs\n20,bright\n");
+  put(scratch / "zero.csv", "theta_i_deg,Rs\n20,0\n");
+  put(scratch / "normal.csv", "theta_i_deg,Rs,Rp\n0,0.8,0.8\n");
+  put(scratch / "view.csv", "theta_i_deg,f00\n20,0.1\n");
+  put(scratch / "colour.csv", "wavelength_nm,theta_i_deg,Rs\n-5,20,0.1\n");
+  for (const std::string& bad :
+       {std::string("fit"), std::string("fit --samples absent.csv"),
+        std::string("fit --samples none.csv"), std::string("fit --samples nothing.csv"),
+        std::string("fit --samples almost.csv"), std::string("fit --samples angle.csv"),
+        std::string("fit --samples text.csv"), std::string("fit --samples zero.csv"),
+        std::string("fit --samples view.csv"), std::string("fit --samples colour.csv"),
+        std::string("fit --samples normal.csv"),
+        std::string("fit --samples normal.csv --fix sigma=0.1 --fix diffuse=0 --out fit.csv"),
+        std::string("fit --samples normal.csv --fix sigma"),
+        std::string("fit --samples normal.csv --fix sigam=0.1"),
+        std::string("fit --samples normal.csv --fix sigma=-1"),
+        std::string("fit --samples normal.csv --fix k=1 --fix k=1"),
+        std::string("fit --samples normal.csv --error 0"),
+        std::string("fit --samples normal.csv --error x")}) {
+    const Outcome outcome = malusIn(scratch.path, bad);
+    EXPECT_EQ(outcome.code, 2) << bad;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n'
+                                                                           << outcome.err;
+    EXPECT_EQ(outcome.out, "") << bad;
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "fit.csv"));
+  EXPECT_NE(malusIn(scratch.path, "fit --samples angle.csv").err.find("angle.csv:3"),
+            std::string::npos);
+}

@@ -1,0 +1,124 @@
+// Fitting n, k, sigma and the diffuse term to samples (nw/matter/SurfaceFit.nw).
+#include "matter/SurfaceFit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "light/CDError.hpp"
+#include "matter/BRDFSampling.hpp"
+#include "matter/BRDFTorranceSparrow.hpp"
+#include "matter/Fresnel.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double degree = std::numbers::pi / 180;
+
+/// What a laboratory sees of a surface: fs and fp about the mirror direction, and DHR. The truth is
+/// the class itself with its own diffuse term, not the fit's prediction.
+std::vector<CDFitSample> laboratory(const BRDFTorranceSparrow& truth, double relative) {
+  std::vector<CDFitSample> samples;
+  for (const double i : {15., 35., 55., 70.}) {
+    for (double r = i - 30; r <= std::min(i + 30, 80.); r += 7.5) {
+      if (r < 0) continue;
+      const CDMuellerMatrix f = truth.at(CDBRDFGeometry::fromDegrees(i, r, 180));
+      for (const double sign : {1., -1.}) {
+        const double value = (f.getScalar() + sign * f.getMueller(1, 0)) / 2;
+        samples.push_back({sign > 0 ? CDFitQuantity::seenS : CDFitQuantity::seenP, 0,
+                           i * degree, r * degree, std::numbers::pi, value, relative * value});
+      }
+    }
+  }
+  const double dhr = truth.getDHR(15 * degree)[0];
+  samples.push_back({CDFitQuantity::dhr, 0, 15 * degree, 0, 0, dhr, relative * dhr});
+  return samples;
+}
+
+double normal(CDRandom& random) {
+  return std::sqrt(-2 * std::log(1 - random.uniform())) *
+         std::cos(2 * std::numbers::pi * random.uniform());
+}
+
+std::vector<CDFitSample> polished(const std::vector<double>& angles_deg, double n, double k) {
+  std::vector<CDFitSample> samples;
+  for (const double angle : angles_deg) {
+    const CDReflectances R = fresnelReflectances(angle * degree, n, k);
+    samples.push_back({CDFitQuantity::reflectanceS, 0, angle * degree, 0, 0, R.Rs, 1e-3});
+    samples.push_back({CDFitQuantity::reflectanceP, 0, angle * degree, 0, 0, R.Rp, 1e-3});
+  }
+  return samples;
+}
+}  // namespace
+
+// The fit knows the diffuse term's mean from the table (1e-5 absolute), the truth may sum it anew.
+TEST(SurfaceFitIdentity, SamplesWithoutNoiseGiveTheParametersBack) {
+  const double surfaces[][3] = {
+      {0.405, 2.950, 0.2}, {1.5, 0.3, 0.1}, {2.9, 3.1, 0.35}, {0.2, 5, 0.15}};
+  for (const auto& [n, k, sigma] : surfaces) {
+    const CDSurfaceFit fit = fitSurface(laboratory(BRDFTorranceSparrow(n, k, sigma), 0.01));
+    EXPECT_NEAR(fit.values[0], n, 2e-3 * n);
+    EXPECT_NEAR(fit.values[1], k, 2e-3 * k);
+    EXPECT_NEAR(fit.values[2], sigma, 2e-4 * sigma);
+    EXPECT_NEAR(fit.values[3], 1, 2e-2);
+    EXPECT_LT(fit.chi2, 0.01);
+  }
+}
+
+TEST(SurfaceFitIdentity, APolishedSampleGivesItsIndex) {
+  const CDSurfaceFit fit =
+      fitSurface(polished({20, 45, 60, 75}, 0.405, 2.95), {{{}, {}, 0.1, 0.0}});
+  EXPECT_NEAR(fit.values[0], 0.405, 1e-6);  // differences of 1e-8 only steer, they do not bias
+  EXPECT_NEAR(fit.values[1], 2.95, 1e-6);
+  EXPECT_EQ(fit.values[2], 0.1);  // fixed
+  EXPECT_EQ(fit.errors[2], 0);
+  EXPECT_GT(fit.errors[0], 0);
+  const CDSurfaceFit other =
+      fitSurface(polished({20, 45, 60, 75}, 0.41, 2.95), {{{}, {}, 0.1, 0.0}});
+  EXPECT_GT(std::abs(other.values[0] - 0.405), 1e-3);  // negative control
+}
+
+// 60 runs: the ratio of scatter and stated error is known to 1/sqrt(120) = 9 %; four of these.
+TEST(SurfaceFitInvariant, ParametersScatterAsTheirErrorsSay) {
+  const auto exact = laboratory(BRDFTorranceSparrow(0.405, 2.95, 0.2), 0.01);
+  CDRandom random(8);
+  std::array<double, 4> squares{}, halves{};
+  constexpr int runs = 60;
+  for (int run = 0; run < runs; ++run) {
+    auto noisy = exact;
+    for (CDFitSample& s : noisy) s.value += s.error * normal(random);
+    const CDSurfaceFit fit = fitSurface(noisy);
+    const std::array<double, 4> truth{0.405, 2.95, 0.2, 1};
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double pull = (fit.values[j] - truth[j]) / fit.errors[j];
+      squares[j] += pull * pull / runs;
+      halves[j] += 4 * pull * pull / runs;
+    }
+  }
+  for (std::size_t j = 0; j < 4; ++j) {
+    EXPECT_NEAR(std::sqrt(squares[j]), 1, 0.36) << surface_parameter_names[j];
+    EXPECT_GT(std::abs(std::sqrt(halves[j]) - 1),
+              0.36);  // negative control: errors half as large
+  }
+}
+
+TEST(SurfaceFitInvariant, AWrongModelIsToldByChiSquared) {
+  CDTorranceSparrowOptions smith;
+  smith.shadowing = CDShadowing::none;
+  smith.diffuse = CDDiffuseTerm::none;
+  const CDSurfaceFit fit =
+      fitSurface(laboratory(BRDFTorranceSparrow(1.5, 0.3, 0.35, smith), 0.001));
+  EXPECT_GT(fit.chi2, 10.0 * static_cast<double>(fit.samples));
+}
+
+TEST(SurfaceFitInvariant, WhatCannotBeToldIsRefused) {
+  const CDFixedParameters smooth{{{}, {}, 0.1, 0.0}};
+  // Rs = Rp at normal incidence: one number for n and k
+  EXPECT_THROW(fitSurface(polished({0}, 0.405, 2.95), smooth), CDMathError);
+  EXPECT_NO_THROW(fitSurface(polished({0, 70}, 0.405, 2.95), smooth));  // negative control
+  EXPECT_THROW(fitSurface({}), CDMathError);
+  EXPECT_THROW(fitSurface(polished({30}, 1.5, 0.1), {{1.5, 0.1, 0.1, 1.0}}), CDMathError);
+  // a polished sample says nothing of sigma
+  EXPECT_THROW(fitSurface(polished({20, 45, 60}, 1.5, 1)), CDMathError);
+}
