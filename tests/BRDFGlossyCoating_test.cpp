@@ -222,7 +222,7 @@ TEST(BRDFGlossyCoatingIdentity, GatherIsTheSumOfScatter) {
 TEST(BRDFGlossyCoatingInvariant, SamplesFollowTheirDensity) {
   expectSamplesFollowDensity(varied(0.3));
   expectSamplesFollowDensity(varied(0));
-  EXPECT_LT(drawn(varied(0.3), varied(0.4), 0.6).p_value, false_alarm);  // negative control
+  EXPECT_LT(draw(varied(0.3), varied(0.4), 0.6).p_value, false_alarm);  // negative control
 }
 
 TEST(BRDFGlossyCoatingInvariant, TheSamplerGivesTheDHR) {

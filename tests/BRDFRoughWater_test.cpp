@@ -126,7 +126,7 @@ TEST(BRDFRoughWaterIdentity, DHRAndGatherAreTheSums) {
 
 TEST(BRDFRoughWaterInvariant, TheSampler) {
   expectSamplesFollowDensity(varied(15));
-  EXPECT_LT(drawn(varied(15), varied(14), 0.6).p_value, false_alarm);  // negative control
+  EXPECT_LT(draw(varied(15), varied(14), 0.6).p_value, false_alarm);  // negative control
   EXPECT_LT(expectSamplerGivesDHR(sea(5, true, 0.02)), 0.02);
   EXPECT_LT(expectSamplerGivesDHR(sea(0, false)), 0.02);
 }
