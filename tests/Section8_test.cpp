@@ -1,0 +1,23 @@
+// The experiment that chapter 8 of the thesis proposes (nw/thesis/Section8.nw).
+#include "thesis/Section8.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "Items.hpp"
+
+using namespace malus;
+
+TEST(Section8Invariant, TheExperimentHasItsVerdicts) {
+  const CDItem item = ran("C7", reproduceC7);
+  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
+  EXPECT_EQ(named(item, CDVerdict::reproduced),
+            (std::set<std::string>{"exact", "reflectivities", "roughness", "errors",
+                                   "polarizer", "normal"}));
+  EXPECT_EQ(item.tables().size(), 3u);
+  EXPECT_EQ(item.pictures().size(), 1u);
+  // negative control: noise makes a mistake at all
+  EXPECT_GT(std::stod(valuesOf(item).at("reflectivity")), 0.01);
+}
