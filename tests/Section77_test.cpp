@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "Items.hpp"
@@ -78,4 +79,11 @@ TEST(Section77Published, NegativeControlAChangedDigitOfAPrintedSkyIsSeen) {
   const Corrupted table("rayleigh.csv", "0.20888340", "0.20888342");
   EXPECT_EQ(named(ran("X.sky", reproduceXSky, table.data), CDVerdict::differs),
             std::set<std::string>{"natraj"});
+}
+
+TEST(Section77Invariant, CopperSeesThatTheSkyIsPolarisedAndMattChunksDoNot) {
+  const CDItem item = ran("X.realsky", reproduceXRealSky);
+  EXPECT_EQ(named(item, CDVerdict::reproduced),
+            (std::set<std::string>{"matt", "copper.flight-nadir", "copper.rochester-day"}));
+  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
 }
