@@ -75,7 +75,7 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   const auto says = [&](const std::string& part,
                         const std::function<void(const fs::path&)>& spoil) {
     const std::string sentence = complaint(spoil);
-    EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find(part), std::string::npos) << part << " in: " << sentence;
   };
   EXPECT_EQ(complaint([](const fs::path&) {}), "none");  // the negative control
   says("render the missing tiles", without(second));
