@@ -159,7 +159,7 @@ class Book:
         public = names.public(options.headers) if options.headers else []
         self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
-        self.verdicts = verdicts.Verdicts(options.report)
+        self.verdicts = verdicts.Verdicts(options.report, options.inventory)
         self.parts, self.front, self.back = [], [], []
 
     def gather(self):
@@ -219,6 +219,7 @@ def run(description, render):
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
+    arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")
     arguments.add_argument("chapters", nargs="+")
     try:
         render(arguments.parse_args())

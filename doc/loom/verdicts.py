@@ -9,6 +9,7 @@ is no erratum stops the book, and so does an erratum of the report that has no
 line. \inventory becomes the table of all items, each with its verdicts and a
 link to where it is computed.
 """
+import csv
 import json
 import os
 import re
@@ -51,12 +52,16 @@ def arguments(line):
 class Verdicts:
     """What the report says, for the pages that ask for it."""
 
-    def __init__(self, report):
+    def __init__(self, report, inventory=None):
         path = os.path.join(report, "report.json")
         self.items = []
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:
                 self.items = json.load(file)["items"]
+        self.listed = []  # rows of the inventory, those without a function as well
+        if inventory:
+            with open(inventory, encoding="utf-8") as file:
+                self.listed = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.claims = {f"{item['id']}/{claim['name']}": claim for item in self.items for claim in item["claims"]}
 
     def substitute(self, page, chapters, pages):
@@ -93,7 +98,7 @@ class Verdicts:
         page.latex = "\n".join(lines).replace(r"\begin{errata}", BEGIN_ERRATA).replace(r"\end{errata}", END)
 
     def inventory(self, page, chapters, pages):
-        """All items of the report, in its order."""
+        """All items of the report, in its order, and what the inventory lists besides."""
         homes = {word: chunk for chapter in chapters for chunk in chapter.chunks for word, _ in chunk.defines}
         functions = {}
         for chapter in chapters:
@@ -109,5 +114,8 @@ class Verdicts:
             counts = " & ".join(str(item["counts"].get(verdict) or "") for verdict in VERDICTS)
             rows.append(rf"\lititem{{{item['id']}}}{{{item['id']}}} & {plain(item['title'])} & {plain(item['place'])} & {counts} & "
                         rf"chapter~\ref{{{labels[home.chapter.path][1]}}}, \litlink{{{home.label}}}{{code}} \\")
+        built = {item["id"] for item in self.items}
+        rows += [rf"\lititem{{{row['id']}}}{{{row['id']}}} & {plain(row['title'])} & {plain(row['place'])} & & & & & not built \\"
+                 for row in self.listed if row["id"] not in built]
         stop_if_any(problems)
         return BEGIN_ITEMS + " ".join(rows) + END
