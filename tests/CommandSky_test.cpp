@@ -303,3 +303,17 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
   for (const char* choice : {"malus", "natraj", "iprt"})
     EXPECT_NE(choices.find(choice), std::string::npos);
 }
+
+TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
+  const Scratch scratch;
+  const auto intensity = [&](const std::string& column, const std::string& value) {
+    put(scratch / "one.csv", "tau,mu0,mu,phi_deg," + column + "\n0.5,0.6,0.4,90," + value + "\n");
+    return tableOf(malusIn(scratch.path, "sky --points one.csv").out).number(0, "S0");
+  };
+  EXPECT_EQ(intensity("depolarisation", "0.03"), intensity("depolarization", "0.03"));
+  EXPECT_NE(intensity("depolarisation", "0.03"), intensity("depolarisation", "0"));  // it is read
+  put(scratch / "two.csv", "tau,mu0,mu,phi_deg,depolarization,depolarisation\n0.5,0.6,0.4,90,0,0\n");
+  const Outcome twice = malusIn(scratch.path, "sky --points two.csv");
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_EQ(twice.err, "two.csv: depolarisation: stands beside depolarization; give it once\n");
+}
