@@ -64,6 +64,27 @@ TEST(ModelsInScenesInvariant, AMixOfModelsMakesAPhysicalPicture) {
   EXPECT_GT(polarized, 500);  // of 3072: ground, coating and water polarise
 }
 
+// Two models have a parameter "diffuse"; it is a word in one of them and a number in the other.
+TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
+  const Scratch scratch;
+  json scene = mixedScene();
+  json& copper = scene["materials"]["copper-010"];
+  copper = {{"model", "torrance-sparrow"}, {"n", 0.405}, {"k", 2.95}, {"sigma", 0.2},
+            {"diffuse", "reciprocal"}};
+  put(scratch / "s.json", scene.dump(1));
+  EXPECT_NO_THROW(readScene(scratch / "s.json"));
+  for (const auto& [value, expected] :
+       {std::pair<json, std::string>{"recipocal", "did you mean reciprocal?"},
+        {0.3, "is none of the words allowed here"},
+        {json::array(), "a word or a spectrum"}}) {
+    copper["diffuse"] = value;
+    put(scratch / "s.json", scene.dump(1));
+    const Outcome outcome = malusIn(scratch.path, "render s.json --dry-run");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find(expected), std::string::npos) << outcome.err;
+  }
+}
+
 TEST(ModelsInScenesInvariant, NegativeControlImpossibleMaterialsAreRefused) {
   const Scratch scratch;
   json scene = mixedScene();

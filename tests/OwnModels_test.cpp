@@ -11,7 +11,9 @@
 using namespace malus;
 
 namespace {
-const std::map<std::string, CDItemFunction> items{{"X.dirsig", reproduceXDIRSIG},
+const std::map<std::string, CDItemFunction> items{{"X.lambert", reproduceXLambert},
+                                                   {"X.torrance-sparrow", reproduceXTorranceSparrow},
+                                                   {"X.dirsig", reproduceXDIRSIG},
                                                    {"X.glossy", reproduceXGlossy},
                                                    {"X.water", reproduceXWater},
                                                    {"X.beard-maxwell", reproduceXBeardMaxwell},
