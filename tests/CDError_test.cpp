@@ -31,6 +31,15 @@ TEST(CDErrorIdentity, UnknownPartsLeaveNoTrace) {
   EXPECT_EQ(said({"", 0, "sigma"}, ""), "sigma: must be positive; give a roughness such as 0.2");
 }
 
+// Found by make fuzz: a field of a YAML file whose value went over several lines.
+TEST(CDErrorIdentity, AnyValueMakesOneLine) {
+  EXPECT_STREQ(CDInputError({"a.yml", 7, "type"}, "formula 5\nx\x1b[2J", "is not known", "write 1").what(),
+               "a.yml:7: type = formula 5\\nx\\x1b[2J: is not known; write 1");
+  const std::string longer(201, 'v');
+  EXPECT_STREQ(CDInputError({"a", 0, "f"}, longer, "is long", "cut it").what(),
+               ("a: f = " + longer.substr(1) + "...: is long; cut it").c_str());
+}
+
 TEST(CDErrorIdentity, PlaceIsKept) {
   const CDInputError error({"a.csv", 3, "n"}, "x", "is not a number", "write digits");
   EXPECT_EQ(error.place().file, "a.csv");

@@ -1,6 +1,7 @@
 // Cubes on disk and pictures to look at (nw/imaging/CDImage.nw, nw/imaging/Quicklooks.nw).
 #include "imaging/CDImage.hpp"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <array>

@@ -10,6 +10,7 @@
 
 #include "Program.hpp"
 #include "light/CDTable.hpp"
+#include "matter/BRDFNEFDS.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
 #include "program/Models.hpp"
 
@@ -260,6 +261,53 @@ TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
 }
 
 // Without shadowing the BRDF has no bound at the horizon (chapter BRDFTorranceSparrow); a table cannot hold that.
+// A file is a parameter: by flag, from a column, and the model is that of its class (nw/matter/BRDFNEFDS.nw).
+TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
+  const Scratch scratch;
+  put(scratch / "nef.csv",
+      "wavelength_nm,n,k,bias,sigma,rho_d\n500,1.5,0,0.03,0.2,0.05\n600,1.49,0,0.04,0.3,0.07\n");
+  const auto lasers = CDSpectralGrid::make({500.0, 600.0});
+  const auto two = [&](double a, double b) {
+    return CDSpectralVector<double>(lasers, std::vector<double>{a, b});
+  };
+  const BRDFNEFDS model({two(1.5, 1.49), two(0, 0), two(0.03, 0.04), two(0.2, 0.3),
+                         two(0.05, 0.07), two(0, 0), 15, 40},
+                        {CDSpectralGrid::make({550.0}), 0.4}, 20 * std::numbers::pi / 180);
+  const CDMuellerMatrix f = model.getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 170))[0];
+  const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith=20 ";
+  put(scratch / "q.csv", "file,theta_i_deg,theta_r_deg,phi_deg\nnef.csv,30,40,170\n");
+  const std::string file = "--param file=nef.csv ";
+  for (const std::string& way : {file + "--theta-i 30 --theta-r 40 --phi 170 --format csv",
+                                 std::string("--geometries q.csv")}) {
+    const CDTable table = answer(scratch, nefds + way);
+    for (int k = 0; k < 16; ++k)
+      EXPECT_TRUE(sameBits(table.number(0, fmt::format("f{}{}", k / 4, k % 4)), f.data()[k]));
+  }
+  const auto error = [&](const std::string& arguments) {
+    const Outcome outcome = malusIn(scratch.path, arguments + "--dhr --theta-i 20");
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  const std::string remedy =
+      "give a CSV table of wavelength_nm, n, k, bias, sigma and, if wanted, rho_d, rho_v (the "
+      "name of a file)\n";
+  EXPECT_EQ(error(nefds + "--param file=nf.csv "),
+            "command line: --param file = nf.csv: cannot be opened; " + remedy);
+  EXPECT_EQ(error(nefds + "--param file=. "),
+            "command line: --param file = .: is a directory; " + remedy);
+  EXPECT_EQ(error(nefds), "command line: --param file: is missing for nefds; " + remedy);
+  EXPECT_EQ(error(nefds + file + "--wavelength-nm 610 "),
+            "nef.csv: n: does not cover the band at 610 nm; it covers 500 to 600 nm, and nothing "
+            "is extrapolated; give a wider spectrum or leave out the band\n");
+  put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma,rhod\n500,1.5,0,1,1,1\n");
+  EXPECT_EQ(error(nefds + file),
+            "nef.csv: rhod: is no column of this kind of table; did you mean rho_d? known are: "
+            "wavelength_nm, n, k, bias, sigma, rho_d, rho_v\n");
+  put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma\n500,1.5,0,1,1\n600,1.5,-1,1,1\n");
+  EXPECT_EQ(error(nefds + file),
+            "nef.csv:3: k = -1 at 600 nm: is beyond its limits; give a value from 0 to 1000000\n");
+}
+
 TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
   const Outcome outcome = malusIn(

@@ -308,7 +308,7 @@ TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
   const Scratch scratch;
   const auto intensity = [&](const std::string& column, const std::string& value) {
     put(scratch / "one.csv", "tau,mu0,mu,phi_deg," + column + "\n0.5,0.6,0.4,90," + value + "\n");
-    return tableOf(malusIn(scratch.path, "sky --points one.csv").out).number(0, "S0");
+    return tableOf(malusIn(scratch.path, "sky --points one.csv").out).number(0, "I");
   };
   EXPECT_EQ(intensity("depolarisation", "0.03"), intensity("depolarization", "0.03"));
   EXPECT_NE(intensity("depolarisation", "0.03"), intensity("depolarisation", "0"));  // it is read

@@ -94,3 +94,31 @@ TEST(ModelsInScenesInvariant, NegativeControlImpossibleMaterialsAreRefused) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("more than all light"), std::string::npos) << outcome.err;
 }
+
+// The file of a material counts from the scene's directory, whatever directory the program runs in.
+TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
+  const Scratch scratch;
+  std::filesystem::create_directory(scratch / "there");
+  json scene = mixedScene();
+  scene["materials"]["copper-010"] = {
+      {"model", "nefds"},
+      {"file", "nef.csv"},
+      {"dhr", {{"wavelength_nm", {400, 700}}, {"values", {0.3, 0.5}}}},
+      {"dhr_zenith", 10}};
+  put(scratch / "there/s.json", scene.dump(1));
+  const std::string table =
+      "wavelength_nm,n,k,bias,sigma\n440,1.5,0,0.03,0.2\n660,1.49,0,0.04,0.3\n";
+  put(scratch / "nef.csv", table);  // not this one
+  const std::string dry = "render there/s.json --dry-run --out a";
+  const Outcome missing = malusIn(scratch.path, dry);
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(
+      missing.err.find("materials.copper-010.file = there/nef.csv: cannot be opened; give "),
+      std::string::npos)
+      << missing.err;
+  put(scratch / "there/nef.csv", table);
+  EXPECT_EQ(malusIn(scratch.path, dry).code, 0);
+  scene["materials"]["copper-010"]["file"] = 7;
+  put(scratch / "there/s.json", scene.dump(1));
+  EXPECT_NE(malusIn(scratch.path, dry).err.find("(the name of a file)"), std::string::npos);
+}

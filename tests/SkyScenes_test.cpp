@@ -132,7 +132,7 @@ TEST(SkyScenesInvariant, ADomeWithAerosolIsASkyOfAScene) {
 TEST(SkyScenesInvariant, TheShippedSceneUnderThePolarisedSky) {
   const Scratch scratch;
   const std::string scene = (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
-                             "scenes/chunky-bar-polarized-sky.json")
+                             "scenes/chunky-bar-sky.json")
                                 .string();
   const CDFrame frame = renderScene(readScene(
       scene,

@@ -3,7 +3,7 @@ width = 900
 load style
 set xlabel 'DoP of the irradiance [%]'
 set ylabel 'error [%]'
-set yrange [-2:9]
+set yrange [-2.5:9]
 set key outside right center Left reverse
 plot 1 with lines linestyle 12, \
      'thresholds.csv' using 'DoP':'s1_unpolarized' with lines linetype 1 title '1 % sensor, unpolarised', \

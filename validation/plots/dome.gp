@@ -21,6 +21,6 @@ do for [i = 1:3] {
   plot 'dome.csv' using 'x':'y':(column(Column[i])) with image, \
        90*cos(t),90*sin(t) with lines linecolor rgb '#808080' linewidth 1 dashtype solid, \
        'marks.csv' using 'x':'y' with points pointtype 6 pointsize 0.8 linewidth 1.5 linecolor rgb '#ffffff', \
-       'marks.csv' using (column('x')+6):'y':(strcol('name')) with labels left font ',10' textcolor rgb '#ffffff'
+       'marks.csv' using (column('x')+6):(column('y') > 80 ? column('y') - 7 : column('y')):(strcol('name')) with labels left font ',10' textcolor rgb '#ffffff'
 }
 unset multiplot

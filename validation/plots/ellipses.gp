@@ -10,8 +10,8 @@ set xtics 30
 set ytics -45, 15, 45
 set format x '%g°'
 set format y '%g°'
-set xlabel 'orientation {/Symbol y}'
-set ylabel 'ellipticity {/Symbol c}'
+set xlabel 'orientation ψ'
+set ylabel 'ellipticity χ'
 # one unit of the field in degrees of either axis, so that circles stay round (plot box 680 x 520, about)
 kx = 10
 ky = kx * (124.0 / 225) * (720.0 / 540)

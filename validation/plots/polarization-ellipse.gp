@@ -27,9 +27,9 @@ set arrow 5 from 0,0 to -B*sin(p),B*cos(p) head filled size screen 0.018,20 line
 set arrow 6 from -B*sin(p),B*cos(p) to A*cos(p),A*sin(p) nohead linecolor rgb '#cc79a7' linewidth 1.2 dashtype (6,4)
 set label 3 'a' at 0.48*A*cos(p)-0.08*sin(p),0.48*A*sin(p)+0.08*cos(p) center textcolor rgb '#d55e00'
 set label 4 'b' at -0.6*B*sin(p)-0.08,0.6*B*cos(p)-0.02 center textcolor rgb '#009e73'
-set label 5 '{/Symbol y}' at 0.49*cos(p/2),0.49*sin(p/2) center textcolor rgb '#d55e00'
-set label 6 '{/Symbol a}' at 0.69*cos(0.45*alpha),0.69*sin(0.45*alpha)-0.01 center textcolor rgb '#808080'
-set label 7 '{/Symbol c}' at 0.76*A*cos(p)-0.05*sin(p),0.76*A*sin(p)+0.05*cos(p) center textcolor rgb '#cc79a7'
+set label 5 'ψ' at 0.49*cos(p/2),0.49*sin(p/2) center textcolor rgb '#d55e00'
+set label 6 'α' at 0.69*cos(0.45*alpha),0.69*sin(0.45*alpha)-0.01 center textcolor rgb '#808080'
+set label 7 'χ' at 0.76*A*cos(p)-0.05*sin(p),0.76*A*sin(p)+0.05*cos(p) center textcolor rgb '#cc79a7'
 set label 8 '{/sans-serif:Italic E}_{0x}' at X+0.02,-0.09 left
 set label 9 '{/sans-serif:Italic E}_{0y}' at 0.03,Y+0.08 left
 set parametric
