@@ -1,4 +1,4 @@
-# Finding 3: five hypotheses on the diffuse term, and the DoLP of aluminium under each.
+# Finding 3: five hypotheses on the diffuse term, what table 7.1 demands of it, and the DoLP of aluminium under each.
 width = 1000; height = 440
 load style
 set multiplot
@@ -6,13 +6,15 @@ set xrange [0:90]; set xtics 15; set xlabel 'view zenith [deg]'
 set lmargin 11; set rmargin 3
 set origin 0,0; set size 0.5,1
 set ylabel '(1 - DHR) / π [sr^{-1}]'
-set yrange [-0.01:0.06]
+set yrange [-0.01:0.065]
 set key top left Left reverse samplen 2
 plot 'hypotheses.csv' using 'view_deg':'none' with lines linetype 7 title 'no diffuse term', \
      '' using 'view_deg':'incidence' with lines linetype 2 title 'V-groove at the incidence', \
      '' using 'view_deg':'vgroove' with lines linetype 1 linewidth 3 title 'V-groove at the view', \
      '' using 'view_deg':'unshadowed' with lines linetype 4 title 'unshadowed at the view', \
-     '' using 'view_deg':'smith' with lines linetype 3 title 'Smith at the view'
+     '' using 'view_deg':'smith' with lines linetype 3 title 'Smith at the view', \
+     'witness.csv' using 'view_deg':'low_per_sr':(column('view_deg')-2):(column('view_deg')+2):'low_per_sr':'high_per_sr' \
+        with boxxyerror linetype 7 dashtype solid linewidth 2 fillstyle solid 0.25 border title 'table 7.1 demands'
 set origin 0.5,0; set size 0.5,1
 set ylabel 'DoLP at 5 deg incidence'
 set yrange [0:0.04]
