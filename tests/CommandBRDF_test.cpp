@@ -308,6 +308,58 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
             "nef.csv:3: k = -1 at 600 nm: is beyond its limits; give a value from 0 to 1000000\n");
 }
 
+// A model goes into a table of each layout and comes back as a measured surface, near to what it was.
+TEST(CommandBRDFInvariant, AModelThroughATable) {
+  const Scratch scratch;
+  const std::string glass =
+      "brdf --model torrance-sparrow --param n=1.5 --param k=0 --param sigma=0.3 --param "
+      "shadowing=smith ";
+  const std::string geometry = "--theta-i 30 --theta-r 44 --phi 170 --format csv";
+  const CDTable truth = answer(scratch, glass + geometry);
+  for (const auto& [file, model] :
+       {std::pair{"t.csv", "measured"}, {"t.pbsdf", "measured"}, {"t.binary", "merl"}}) {
+    const Outcome written = malusIn(scratch.path, glass + "--steps 20 --table " + file);
+    EXPECT_EQ(written.code, 0) << written.err;
+    const bool merl = std::string(model) == "merl";
+    const Outcome outcome = malusIn(
+        scratch.path, fmt::format("brdf --model {} --param file={} {} {}", model, file,
+                                  merl ? "--param blue_nm=500 --param green_nm=550 --param red_nm=600"
+                                       : "",
+                                  geometry));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find(fmt::format("{}: ", file)), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(" not realisable; reflects up to 0."), std::string::npos)
+        << outcome.err;
+    const CDTable back = table(outcome.out);
+    const double f00 = truth.number(0, "f00");
+    for (int k = 0; k < (merl ? 1 : 16); ++k) {
+      const std::string element = fmt::format("f{}{}", k / 4, k % 4);
+      EXPECT_NEAR(back.number(0, element), truth.number(0, element), 0.02 * f00) << element;
+    }
+    EXPECT_NE(back.number(0, "f00"), f00);  // negative control: it has been interpolated
+  }
+  const auto error = [&](const std::string& arguments) {
+    const Outcome outcome = malusIn(scratch.path, arguments);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_EQ(error("brdf --model measured --param file=t.csv --wavelength-nm 551 " + geometry),
+            "t.csv: the table: does not cover the band at 551 nm; it covers 550 to 550 nm, and "
+            "nothing is extrapolated; give a wider spectrum or leave out the band\n");
+  EXPECT_EQ(error(glass + "--table t.dat"),
+            "command line: --table = t.dat: has an ending that names no layout; let it end with "
+            ".csv, .pbsdf (KAIST) or .binary (MERL)\n");
+  EXPECT_EQ(error(glass + "--table t.csv --steps 181"),
+            "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
+  EXPECT_EQ(error(glass + "--table t.csv --dhr"),
+            "command line: --table: excludes angles, --geometries, --dhr, --sample and --out; ask "
+            "for one thing at a time\n");
+  EXPECT_EQ(error("brdf --model merl --param file=t.csv --param blue_nm=500 --param green_nm=550 "
+                  "--param red_nm=600 " + geometry),
+            "t.csv: is no MERL file of 90 x 90 x 180 cells; give a complete file of measured "
+            "reflection\n");
+}
+
 TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
   const Outcome outcome = malusIn(

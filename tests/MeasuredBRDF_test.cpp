@@ -282,6 +282,7 @@ TEST(MeasuredBRDFInvariant, AModelThroughMERLAndBack) {
   const auto model = metal(0.3, {450, 550, 650});
   put(scratch / "m", merlFile(model));
   const BRDFMeasured back = own(readMERL(scratch / "m", {450, 550, 650}));
+  EXPECT_LT(reciprocityError(back), 1e-12);  // by the layout
   for (const Angles& a : someAngles(100, 1.2))
     for (std::size_t band = 0; band < 3; ++band) {
       const double f = model.getBRDF(a.there()).at(band).getScalar();

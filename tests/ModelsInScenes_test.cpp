@@ -122,3 +122,35 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
   put(scratch / "there/s.json", scene.dump(1));
   EXPECT_NE(malusIn(scratch.path, dry).err.find("(the name of a file)"), std::string::npos);
 }
+
+// A measured surface stands in a scene beside computed ones.
+TEST(ModelsInScenesInvariant, AMeasuredSurfaceLooksLikeItsModel) {
+  const Scratch scratch;
+  json scene = mixedScene();
+  scene["bands"] = {{"wavelength_nm", {550}}};
+  scene["sensor"]["width"] = scene["sensor"]["height"] = 16;
+  const json metal = {{"model", "torrance-sparrow"}, {"n", 0.4}, {"k", 2.9}, {"sigma", 0.3}};
+  for (const auto& [name, material] : scene["materials"].items())
+    scene["materials"][name] = metal;
+  put(scratch / "s.json", scene.dump(1));
+  const CDFrame computed = renderScene(readScene(scratch / "s.json"));
+  EXPECT_EQ(
+      malusIn(scratch.path,
+              "brdf --model torrance-sparrow --param n=0.4 --param k=2.9 --param sigma=0.3 "
+              "--steps 24 --table m.pbsdf")
+          .code,
+      0);
+  for (const auto& [name, material] : scene["materials"].items())
+    scene["materials"][name] = {{"model", "measured"}, {"file", "m.pbsdf"}};
+  put(scratch / "s.json", scene.dump(1));
+  const CDFrame measured = renderScene(readScene(scratch / "s.json"));
+  double difference = 0, sum = 0;
+  for (std::size_t y = 0; y < 16; ++y)
+    for (std::size_t x = 0; x < 16; ++x)
+      for (int k = 0; k < 4; ++k) {
+        difference += std::abs(measured.at(x, y, 0)[k] - computed.at(x, y, 0)[k]);
+        sum += std::abs(computed.at(x, y, 0)[k]);
+      }
+  EXPECT_LT(difference, 0.1 * sum);  // interpolation, and other directions drawn
+  EXPECT_GT(difference, 0);
+}

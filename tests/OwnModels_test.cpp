@@ -33,3 +33,12 @@ TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
               0.01);  // negative control: something is reflected
   }
 }
+
+// The claims about tables hold, and their numbers are of a size that could have failed them.
+TEST(OwnModelsInvariant, TablesComeNearerWithTheSquareOfTheStep) {
+  const CDItem item = ran("X.measured", reproduceXMeasured);
+  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"order", "narrow", "wide"}));
+  const auto values = valuesOf(item);
+  EXPECT_GT(std::stod(values.at("plain")), std::stod(values.at("half")));
+  EXPECT_GT(std::stod(values.at("half")), 0.01);  // negative control: there is an error
+}

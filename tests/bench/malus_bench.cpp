@@ -2,10 +2,12 @@
 // repetitions interleaved so that both meet the same machine; at the end the ratio of the medians.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,8 +15,10 @@
 #include "Bare.hpp"
 #include "Sampling.hpp"
 #include "light/CDSpectralVector.hpp"
+#include "light/CDTable.hpp"
 #include "matter/BRDFSampling.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "matter/MuellerTables.hpp"
 #include "program/Models.hpp"
 
 using namespace malus;
@@ -157,6 +161,26 @@ void bareMueller(benchmark::State& state) {
 }
 
 // ---- models by name, as a user asks for them: one geometry and all its bands in one call of scatter()
+/// Files for the models that are made from one: the lasers of nefds, and rough metal at five
+/// wavelengths as a table. They go with the process.
+struct Tables {
+  std::filesystem::path directory =
+      std::filesystem::temp_directory_path() / fmt::format("malus-bench-{}", ::getpid());
+  std::string lasers = (directory / "lasers.csv").string(),
+              matrices = (directory / "metal.pbsdf").string();
+  Tables() {
+    std::filesystem::create_directory(directory);
+    writeWhole(lasers, "wavelength_nm,n,k,bias,sigma\n400,1.5,0,.02,.2\n700,1.5,0,.03,.2\n");
+    const auto grid = CDSpectralGrid::make({400, 470, 540, 610, 680});
+    const BRDFTorranceSparrow metal({grid, 0.4}, {grid, 2.9}, {grid, sigma});
+    writeWhole(matrices, tensorFile(tabulate(metal, 24)));
+  }
+  ~Tables() { std::filesystem::remove_all(directory); }
+};
+const Tables& tables() {
+  static const Tables the_tables;
+  return the_tables;
+}
 struct NamedModel {
   const char* name;
   std::map<std::string, std::string> parameters;  // those without a default
@@ -171,6 +195,8 @@ const std::vector<NamedModel>& namedModels() {
       {"beard-maxwell", {{"n", "1.5"}, {"k", "0"}, {"bias", "0.002"}, {"sigma", "0.2"}, {"rho_v", "0.01"}}},
       {"nadal-breon", {{"reflectance", "0.1"}, {"rho", "0.03"}, {"beta", "8"}}},
       {"robertson-sandford", {{"emissivity", "0.5"}, {"diffuse", "0.3"}, {"b", "0.2"}, {"e", "0.3"}}},
+      {"nefds", {{"file", tables().lasers}, {"dhr", "0.4"}, {"dhr_zenith", "20"}}},
+      {"measured", {{"file", tables().matrices}}},
   };
   return models;
 }
