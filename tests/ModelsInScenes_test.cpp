@@ -85,6 +85,28 @@ TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
   }
 }
 
+// A paint is solved when the scene is read; a spectrum serves for its pigment as for any other parameter.
+TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
+  const Scratch scratch;
+  json scene = mixedScene();
+  scene["materials"]["copper-015"] = {{"model", "layered-paint"}, {"pigment_n", 2.75},
+                                      {"radius", 110},            {"concentration", 0.1},
+                                      {"thickness", 20},          {"sigma", 0.1}};
+  put(scratch / "s.json", scene.dump(1));
+  const CDFrame frame = renderScene(readScene(scratch / "s.json"));
+  for (std::size_t y = 0; y < frame.height; ++y)
+    for (std::size_t x = 0; x < frame.width; ++x) {
+      const double* s = frame.at(x, y, 1);
+      ASSERT_GT(s[0], 0);
+      ASSERT_LE(std::sqrt(s[1] * s[1] + s[2] * s[2] + s[3] * s[3]), s[0] * (1 + 1e-6));
+    }
+  scene["materials"]["copper-015"]["radius"] = 50000;  // negative control: too large for the series
+  put(scratch / "s.json", scene.dump(1));
+  const Outcome outcome = malusIn(scratch.path, "render s.json --out a");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("larger than Mie's series"), std::string::npos) << outcome.err;
+}
+
 TEST(ModelsInScenesInvariant, NegativeControlImpossibleMaterialsAreRefused) {
   const Scratch scratch;
   json scene = mixedScene();
