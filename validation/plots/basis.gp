@@ -1,0 +1,16 @@
+# X.basis: error of a sum of basis functions, and matrices that do not exist, against the number of coefficients.
+width = 1000; height = 440
+load style
+of(s, c) = stringcolumn('surface') eq s ? column(c) : NaN
+set multiplot
+set lmargin 11; set rmargin 3
+set logscale x; set xlabel 'coefficients'; set xrange [10:4000]
+set datafile missing NaN
+set origin 0,0; set size 0.5,1
+set logscale y; set ylabel 'error [%]'
+set key top right samplen 2
+plot for [s in 'copper water coating'] 'basis.csv' using 'coefficients':(of(s, 'error_percent')) with linespoints title s
+set origin 0.5,0; set size 0.5,1
+unset logscale y; set ylabel 'matrices that do not exist [%]'; set yrange [0:*]
+plot for [s in 'copper water coating'] 'basis.csv' using 'coefficients':(of(s, 'unrealizable_percent')) with linespoints title s
+unset multiplot
