@@ -145,6 +145,7 @@ class Part:
     def __init__(self, folder, title, about):
         self.folder, self.title, self.about = folder, title, about
         self.pages = []
+        self.page = None  # what a renderer shows of the part itself
 
 
 class Book:

@@ -1,10 +1,10 @@
-"""LaTeX to HTML by LaTeXML, one chapter at a time, so that chapters convert side by side and are cached.
+"""LaTeX to HTML by LaTeXML, each chapter by itself, so that chapters convert side by side and are cached.
 
-LaTeXML works in two steps. The first turns LaTeX into XML; there we give
-every thing that can be referred to its address and resolve all references,
-since only we see the whole book. The second step turns that XML into HTML.
-What a step made is kept beside a digest of what it was made from, and made
-again only if that changed.
+LaTeXML works in two steps, and latexml.pl runs each of them for many chapters
+at once. The first turns LaTeX into XML; there we give every thing that can be
+referred to its address and resolve all references, since only we see the
+whole book. The second step turns that XML into HTML. What a step made is kept
+beside a digest of what it was made from, and made again only if that changed.
 """
 import hashlib
 import os
@@ -13,7 +13,9 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as ET
 
-from problems import Problem, Problems
+from problems import Problem, stop_if_any
+
+DRIVER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "latexml.pl")
 
 NAMESPACE = "http://dlmf.nist.gov/LaTeXML"
 ET.register_namespace("", NAMESPACE)
@@ -41,22 +43,41 @@ def version(tool):
     return f"{path} {status.st_size} {status.st_mtime_ns}"
 
 
-def made_from(target, text, make):
-    """Calls make() unless target was made from this very text."""
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    key = target + ".key"
-    if os.path.exists(target) and os.path.exists(key):
-        with open(key, encoding="utf-8") as kept:
-            if kept.read() == digest:
-                return
-    make()
-    with open(key, "w", encoding="utf-8") as kept:
-        kept.write(digest)
-
-
 def write(path, text):
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
+
+
+class Job:
+    """One file for LaTeXML: which page it is of, the text it is made from, and where things lie."""
+
+    def __init__(self, page, text, path, before, after):
+        self.page, self.text = page, text
+        self.source, self.destination, self.log = path + before, path + after, path + after + ".log"
+        self.key = path + after + ".key"
+
+    def is_made(self, digest):
+        """Whether the destination was made from this very text."""
+        if not os.path.exists(self.destination) or not os.path.exists(self.key):
+            return False
+        with open(self.key, encoding="utf-8") as kept:
+            return kept.read() == digest
+
+    def problems(self, said):
+        """Every complaint of LaTeXML is a problem: of the chapter, at its line, since the lines are the chapter's."""
+        lines = []
+        if os.path.exists(self.log):
+            with open(self.log, encoding="utf-8", errors="replace") as file:
+                lines = file.read().splitlines()
+        found = []
+        for i, line in enumerate(lines):
+            if message := MESSAGE.match(line):
+                place = PLACE.search(" ".join(lines[i:i + 3]))
+                line = int(place[1]) if place else 0
+                found.append(Problem(self.page.source, line, f"LaTeXML: {message[1]}:{message[2]}"))
+        if not found and not os.path.exists(self.destination):
+            found.append(Problem(self.page.source, 0, f"LaTeXML: {said.strip() or 'made nothing, and does not say why'}"))
+        return found
 
 
 class Converter:
@@ -65,54 +86,54 @@ class Converter:
     def __init__(self, work, theme):
         os.makedirs(work, exist_ok=True)
         self.work, self.theme = work, theme
-        with open(os.path.join(theme, "malus.sty.ltxml"), encoding="utf-8") as binding:
-            self.context = binding.read() + version("latexml") + version("latexmlpost")
+        self.context = version("latexml")
+        for path in (os.path.join(theme, "malus.sty.ltxml"), DRIVER):
+            with open(path, encoding="utf-8") as file:
+                self.context += file.read()
 
-    def path(self, name):
-        return os.path.join(self.work, name)
-
-    def run(self, source, log, command):
-        """Every complaint of LaTeXML is a problem: of the chapter, at its line, since the lines are the chapter's."""
-        done = subprocess.run(command, capture_output=True, text=True)
-        with open(log, encoding="utf-8", errors="replace") as file:
-            lines = file.read().splitlines()
+    def run(self, step, jobs):
+        """Those of the jobs that are not made yet; the longest first, so that none is waited for at the end."""
+        digests = {job: hashlib.sha256((job.text + self.context).encode()).hexdigest() for job in jobs}
+        wanted = [job for job in jobs if not job.is_made(digests[job])]
+        if not wanted:
+            return
+        for job in wanted:
+            write(job.source, job.text)
+            for old in (job.destination, job.log, job.key):
+                if os.path.exists(old):
+                    os.remove(old)
+        lines = "".join(f"{job.source}\t{job.destination}\t{job.log}\n"
+                        for job in sorted(wanted, key=lambda job: -len(job.text)))
+        done = subprocess.run(["perl", DRIVER, step, self.theme, str(os.cpu_count())], input=lines, capture_output=True,
+                              text=True)
         problems = []
-        for i, line in enumerate(lines):
-            if message := MESSAGE.match(line):
-                place = PLACE.search(" ".join(lines[i:i + 3]))
-                problems.append(Problem(source, int(place[1]) if place else 0, f"LaTeXML: {message[1]}:{message[2]}"))
-        if done.returncode and not problems:
-            problems.append(Problem(source, 0, done.stderr.strip() or f"{command[0]} gave {done.returncode}"))
-        if problems:
-            raise Problems(problems)
+        for job in wanted:
+            if found := job.problems(done.stderr):
+                problems += found
+            else:
+                write(job.key, digests[job])
+        stop_if_any(problems)
 
-    def to_xml(self, name, source, latex, chapter):
-        """First step: LaTeX of a chapter to the root of its XML; chapter is its number, 0 for none."""
-        text = f"{BEGIN}\\setcounter{{chapter}}{{{max(chapter - 1, 0)}}}{latex}\n\\end{{document}}\n"
-        tex, xml, log = self.path(name + ".tex"), self.path(name + ".xml"), self.path(name + ".log")
+    def to_xml(self, pages):
+        """First step: LaTeX of the pages to the roots of their XML."""
+        jobs = []
+        for page in pages:  # page.chapter is its number, 0 for none
+            text = f"{BEGIN}\\setcounter{{chapter}}{{{max(page.chapter - 1, 0)}}}{page.latex}\n\\end{{document}}\n"
+            jobs.append(Job(page, text, os.path.join(self.work, page.name), ".tex", ".xml"))
+        self.run("xml", jobs)
+        for job in jobs:
+            job.page.root = ET.parse(job.destination).getroot()
 
-        def make():
-            write(tex, text)
-            self.run(source, log, ["latexml", "--quiet", f"--path={self.theme}", f"--log={log}",
-                                   f"--destination={xml}", tex])
-
-        made_from(xml, text + self.context, make)
-        return ET.parse(xml).getroot()
-
-    def to_html(self, name, source, root):
-        """Second step: XML to the HTML of the chapter's body."""
-        text = ET.tostring(root, encoding="unicode")
-        xml, page, log = self.path(name + ".ref.xml"), self.path(name + ".html"), self.path(name + ".post.log")
-
-        def make():
-            write(xml, text)
-            self.run(source, log, ["latexmlpost", "--quiet", "--format=html5", "--pmml", "--novalidate", "--noscan",
-                                   "--nocrossref", "--noindex", "--nographicimages", "--nodefaultresources",
-                                   "--timestamp=0", f"--log={log}", f"--destination={page}", xml])
-
-        made_from(page, text + self.context, make)
-        with open(page, encoding="utf-8") as file:
-            return re.search(r'<article class="ltx_document">\n?(.*)</article>', file.read(), re.DOTALL)[1]
+    def to_html(self, pages):
+        """Second step: XML of the pages to the HTML of their bodies."""
+        jobs = [Job(page, ET.tostring(page.root, encoding="unicode"), os.path.join(self.work, page.name), ".ref.xml", ".html")
+                for page in pages]
+        self.run("html", jobs)
+        bodies = []
+        for job in jobs:
+            with open(job.destination, encoding="utf-8") as file:
+                bodies.append(re.search(r'<article class="ltx_document">\n?(.*)</article>', file.read(), re.DOTALL)[1])
+        return bodies
 
 
 def number_of(element):

@@ -15,7 +15,6 @@ converts their prose, references.py reads the bibliography, and this program
 joins them: it checks what the prose refers to, lays out the pages, and copies
 the figures.
 """
-import concurrent.futures
 import os
 import re
 import string
@@ -27,7 +26,7 @@ import latexml
 import listing
 import references
 from book import Page
-from problems import Problem, Problems, stop_if_any
+from problems import Problem
 
 FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular.otf",
          "/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-italic.otf",
@@ -48,6 +47,8 @@ class Finisher:
     FIGURE = re.compile(r'<span class="ltx_text lit-figure">([^<]*)</span>')
     TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
     LONG_FORMULA = re.compile(r'<math[^>]*alttext="(?!\\displaystyle)[^"]{46,}" display="inline".*?</math>', re.DOTALL)
+    GLUED = re.compile(r"""([(\[“‘]*)(<math\b[^>]*display="inline".*?</math>)([.,;:?!)\]”’]*)""", re.DOTALL)
+    FENCE = re.compile(r"(<mo)(>[(\[|‖{]</mo><mtable)|(</mtable><mo)(>[)\]|‖}]</mo>)")
     PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
     PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
@@ -60,10 +61,16 @@ class Finisher:
         fill = lambda match: self.listings.chunk(self.chunks[match[1]], self.links.anchors[match[1]][1])
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
+        # the style sheet says how small a table is; a formula whose every letter has a size has no small indices
+        html = re.sub(r' mathsize="\d+%"| style="font-size:\d+%;"', "", html)
         # what may be wider than a phone scrolls by itself
         html = self.TABLE.sub(self.scroll, html)
+        html = self.GLUED.sub(self.glue, html)
         html = self.LONG_FORMULA.sub(lambda formula: f'<span class="long">{formula[0]}</span>', html)
         html = re.sub(r'\s*<span class="ltx_tag ltx_tag_note">.*?</span>\s*', "", html)
+        # as TeX does, a little space around what is in large brackets
+        html = self.FENCE.sub(lambda fence: f'{fence[1]} lspace="0.17em"{fence[2]}' if fence[1] else
+                              f'{fence[3]} rspace="0.17em"{fence[4]}', html)
         # the font's prime is raised already; raised again it would be small and high
         html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)
         html = self.PRIME_AND_INDEX.sub(r'<msub><mrow>\1<mo lspace="0" rspace="0">\3</mo></mrow>\2</msub>', html)
@@ -77,6 +84,12 @@ class Finisher:
     def scroll(table):
         kind = " errata" if "as derived" in table[0] else " formula" if "ltx_eqn_table" in table[0][:100] else ""
         return f'<div class="scroll{kind}">{table[0]}</div>'
+
+    @staticmethod
+    def glue(match):
+        """A browser may break a line on either side of a formula; a bracket or a comma must not be left alone."""
+        before, formula, after = match.groups()
+        return f'<span class="glued">{before}{formula}{after}</span>' if before or after else formula
 
     def heading(self, page, match):
         before, anchor, kind, classes, title = match.groups()
@@ -168,23 +181,19 @@ class HtmlBook(book.Book):
             self.substitute(page)
         converter = latexml.Converter(self.options.work, self.options.book)
 
-        def first(page):
-            page.root = converter.to_xml(page.name, page.source, page.latex, page.chapter)
-
-        def second(page):
+        converter.to_xml(pages)
+        for page in pages:
+            for label, (anchor, number, _) in latexml.give_addresses(page.root).items():
+                self.links.labels[label] = (page, anchor, number)
+        for page in pages:
             latexml.resolve(page.root, self.to_label(page), self.to_entry)
-            return converter.to_html(page.name, page.source, page.root)
-
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            all_of(pool, first, sorted(pages, key=lambda page: -len(page.latex)))  # the longest first: no long tail
-            for page in pages:
-                for label, (anchor, number, _) in latexml.give_addresses(page.root).items():
-                    self.links.labels[label] = (page, anchor, number)
-            bodies = all_of(pool, second, pages)
+        bodies = converter.to_html(pages)
         finisher = Finisher(self.links, self.chapters, self.listings)
         for page, body in zip(pages, bodies):
             finisher.finish(page, body)
         self.number_entries(self.back[-1])
+        for part in self.parts:
+            part.page = self.part_page(part)
         self.add_indexes(finisher)
 
     def number_entries(self, page):
@@ -203,6 +212,22 @@ class HtmlBook(book.Book):
             page.title = title
             page.body = finisher.resolve(page, f"<h1>{title}</h1>\n{table}")
             self.back.insert(-1, page)
+
+    @staticmethod
+    def part_page(part):
+        """What a part is about, and how each of its chapters begins."""
+        page = Page(part.folder, "", "")
+        page.title = part.title
+        chapters = "\n".join(f'<li value="{chapter.chapter}"><a href="{chapter.file}">{chapter.title}</a>'
+                             f'<p>{opening(chapter.body)}</p></li>' for chapter in part.pages)
+        page.body = (f'<header class="part"><p class="kind">Part</p><h1>{part.title}</h1><p class="about">{part.about}</p></header>\n'
+                     f'<ol class="chapters">\n{chapters}\n</ol>')
+        return page
+
+    def reading_order(self):
+        """All pages as a reader turns them: a part begins with its own page."""
+        parts = [page for part in self.parts for page in [part.page] + part.pages]
+        return [self.title_page()] + self.front + parts + self.back
 
     def search_page(self):
         page = Page("search", "", "")
@@ -223,8 +248,10 @@ class HtmlBook(book.Book):
         """The navigation beside each page: the part that is being read stands open."""
         out = ['<ol>' + "".join(self.entry(page, current) for page in self.front) + "</ol>"]
         for part in self.parts:
-            is_open = " open" if current in part.pages or not current else ""
-            items = "".join(self.entry(page, current) for page in part.pages)
+            is_open = " open" if current is part.page or current in part.pages else ""
+            here = ' aria-current="page"' if current is part.page else ""
+            items = f'<li><a href="{part.page.file}"{here}>About this part</a></li>'
+            items += "".join(self.entry(page, current) for page in part.pages)
             out.append(f"<details{is_open}><summary>{part.title}</summary><ol>{items}</ol></details>")
         out.append('<ol>' + "".join(self.entry(page, current) for page in self.back) + "</ol>")
         return "\n".join(out)
@@ -232,11 +259,15 @@ class HtmlBook(book.Book):
     def layout(self, page, before, after):
         def neighbour(other, kind):
             return f'<a rel="{kind}" href="{other.file}">{other.title}</a>' if other else "<span></span>"
+
+        above = next((part.page for part in self.parts if page in part.pages), None)
+        up = "" if page.name == "index" else neighbour(above, "up") if above else '<a rel="up" href="index.html">Title page</a>'
+        turn = f"{neighbour(before, 'prev')} {up} {neighbour(after, 'next')}"
         title = " ".join(re.sub(r"<[^>]*>", "", page.title).split())
         return self.template.substitute(
             title=f"{title} - {self.about['book']['title']}" if page.name != "index" else title,
             book=self.about["book"]["title"], name=page.name, contents=self.contents(page), body=page.body,
-            previous=neighbour(before, "prev"), next=neighbour(after, "next"))
+            turn=turn)
 
     def title_page(self):
         """The first page: what the book is, and the house it describes, the ground floor below."""
@@ -245,13 +276,26 @@ class HtmlBook(book.Book):
         floors = []
         for part in reversed(self.parts):
             chapters = "".join(f'<li><a href="{chapter.file}">{chapter.title}</a></li>' for chapter in part.pages)
-            floors.append(f'<section class="floor"><h2>{part.title}</h2><p>{part.about}</p>'
+            floors.append(f'<section class="floor"><h2><a href="{part.page.file}">{part.title}</a></h2><p>{part.about}</p>'
                           f'<ol start="{part.pages[0].chapter}">{chapters}</ol></section>')
         first = self.front[0] if self.front else self.parts[0].pages[0]
         page.body = (f'<header class="title-page"><h1>{about["title"]}</h1><p class="subtitle">{about["subtitle"]}</p>'
-                     f'<p class="after">{about["after"]}</p><p><a href="{first.file}">{about["begin"]}</a></p></header>'
+                     f'<p class="after">{about["after"]}</p>{self.title_picture()}'
+                     f'<p class="begin"><a href="{first.file}">{about["begin"]}</a></p></header>'
                      f'<p class="map-says">{about["map"]}</p>\n<div class="map">\n' + "\n".join(floors) + "\n</div>")
         return page
+
+    def title_picture(self):
+        """One of the book's figures, if a chapter shows it; its caption leads there."""
+        about = self.about["book"]
+        name = about["picture"]
+        path = self.links.figures.get(name)
+        home = next((page for page in self.pages() if f'src="figures/{name}.' in page.body), None)
+        if not path or not home:
+            return ""
+        words = re.sub(r"<[^>]*>", "", about["caption"])
+        return (f'<figure><img src="figures/{name}{os.path.splitext(path)[1]}" alt="{escape(words, quote=True)}"{size_of(path)}>'
+                f'<figcaption>{about["caption"]} <a href="{home.file}">{home.title}</a></figcaption></figure>')
 
     def write(self):
         """Writes what changed, and removes what no longer belongs to the book."""
@@ -272,7 +316,7 @@ class HtmlBook(book.Book):
             with open(path, "rb") as file:
                 put(name, file.read())
 
-        pages = [self.title_page()] + self.pages()
+        pages = self.reading_order()
         for i, page in enumerate(pages):
             before, after = (pages[i - 1] if i else None), (pages[i + 1] if i + 1 < len(pages) else None)
             put(page.file, self.layout(page, before, after).encode())
@@ -296,16 +340,17 @@ class HtmlBook(book.Book):
                 os.rmdir(folder)
 
 
-def all_of(pool, work, items):
-    """Results of work on all items; the problems of all of them, if there are any."""
-    results, problems = [], []
-    for future in [pool.submit(work, item) for item in items]:
-        try:
-            results.append(future.result())
-        except (Problem, Problems) as found:
-            problems.append(found)
-    stop_if_any(problems)
-    return results
+def opening(body):
+    """The first sentence of a chapter, without its links, citations and notes."""
+    paragraph = re.search(r'<p class="ltx_p">(.*?)</p>', body, re.DOTALL)
+    html = re.sub(r"\s*<cite\b.*?</cite>|</?a\b[^>]*>", "", paragraph[1] if paragraph else "", flags=re.DOTALL)
+    sentence = re.match(r".{30,}?[a-z0-9)”>][.?!](?=\s+[A-Z“(]|\s*$)", html.split('<span class="ltx_note')[0].strip(), re.DOTALL)
+    return sentence[0] if sentence and balanced(sentence[0]) else ""
+
+
+def balanced(html):
+    """Whether what opens in a piece of HTML closes there."""
+    return all(len(re.findall(rf"<{tag}\b", html)) == html.count(f"</{tag}>") for tag in ("span", "em", "math", "code", "i", "b"))
 
 
 def main(options):

@@ -8,6 +8,8 @@ set parametric; set trange [0:2*pi]
 set datafile missing '?'  # an image needs all its pixels; those outside of the dome are nan
 set tmargin at screen 0.90; set bmargin at screen 0.04
 set cbtics font ',10' scale 0.5
+beside(x, y) = abs(y) > 75 ? x - 15 : x + 6  # no room beside a mark at the rim: its name stands further in
+under(y) = abs(y) > 75 ? y - 11*sgn(y) : y
 array Column[3]; Column[1] = 'I'; Column[2] = 'DoLP'; Column[3] = 'AoLP_deg'
 array Title[3]; Title[1] = 'radiance'; Title[2] = 'DoLP'; Title[3] = 'AoLP [deg]'
 set multiplot
@@ -21,6 +23,6 @@ do for [i = 1:3] {
   plot 'dome.csv' using 'x':'y':(column(Column[i])) with image, \
        90*cos(t),90*sin(t) with lines linecolor rgb '#808080' linewidth 1 dashtype solid, \
        'marks.csv' using 'x':'y' with points pointtype 6 pointsize 0.8 linewidth 1.5 linecolor rgb '#ffffff', \
-       'marks.csv' using (column('x')+6):(column('y') > 80 ? column('y') - 7 : column('y')):(strcol('name')) with labels left font ',10' textcolor rgb '#ffffff'
+       'marks.csv' using (beside(column('x'), column('y'))):(under(column('y'))):(strcol('name')) with labels left font ',10' textcolor rgb '#ffffff'
 }
 unset multiplot
