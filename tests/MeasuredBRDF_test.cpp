@@ -267,12 +267,12 @@ TEST(MeasuredBRDFPublished, AMERLFileLaidDownByHand) {
   put(scratch / "m", bytes.substr(0, 1000));
   EXPECT_NE(refusal([&] {
               readMERL(scratch / "m", {450, 550, 650});
-            }).find("ends too early"),
+            }).find("is longer or shorter than its MERL sizes say"),
             std::string::npos);
   put(scratch / "m", "no binary at all");
   EXPECT_NE(refusal([&] {
               readMERL(scratch / "m", {450, 550, 650});
-            }).find("is no MERL file"),
+            }).find("does not begin with the sizes of a MERL file"),
             std::string::npos);
 }
 
@@ -280,13 +280,13 @@ TEST(MeasuredBRDFPublished, AMERLFileLaidDownByHand) {
 TEST(MeasuredBRDFInvariant, AModelThroughMERLAndBack) {
   const Scratch scratch;
   const auto model = metal(0.3, {450, 550, 650});
-  put(scratch / "m", merlFile(model));
+  put(scratch / "m", merlFile(model, {60, 45, 40}));  // other sizes, same rules
   const BRDFMeasured back = own(readMERL(scratch / "m", {450, 550, 650}));
   EXPECT_LT(reciprocityError(back), 1e-12);  // by the layout
   for (const Angles& a : someAngles(100, 1.2))
     for (std::size_t band = 0; band < 3; ++band) {
       const double f = model.getBRDF(a.there()).at(band).getScalar();
-      ASSERT_NEAR(back.getBRDF(a.there()).at(band).getScalar(), f, 3e-3 * (0.1 + f));
+      ASSERT_NEAR(back.getBRDF(a.there()).at(band).getScalar(), f, 0.02 * (0.1 + f));
     }
 }
 
