@@ -162,6 +162,20 @@ TEST(PigmentLightInvariant, ThickerIsWhiterAndStreamsDoNotMatter) {
           << i << j;  // harmonics left out
 }
 
+// Views a hair to both sides of the normal are the same view: odd harmonics must vanish there like the sine.
+TEST(PigmentLightIdentity, NothingJumpsAcrossTheNormal) {
+  const BRDFLayeredPaint dark = paint(1.5, {coat(1.8, 0.4, 50)}, 0);
+  const auto at = [&](double degrees) {
+    const auto g = CDBRDFGeometry::fromDegrees(45, std::abs(degrees), degrees < 0 ? 0 : 180);
+    return dark.getBRDF(g).at(0);
+  };
+  for (const auto& [row, column] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+    EXPECT_NEAR(at(-1e-4).getMueller(row, column), at(1e-4).getMueller(row, column),
+                1e-5 * at(0).getScalar());
+  EXPECT_GT(std::abs(at(-5).getMueller(1, 0) - at(5).getMueller(1, 0)),
+            1e-3 * at(0).getScalar());
+}
+
 // Large grains, whose forward peak wants many streams: still no light lost or made.
 TEST(PigmentLightInvariant, LargeGrainsKeepEnergyToo) {
   const BRDFLayeredPaint large = paint(1.5, {coat(1.7, 0, 10, 0.15, 500, 1.2)}, 1);
