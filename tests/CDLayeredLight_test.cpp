@@ -8,12 +8,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "ScatteredOnce.hpp"
 #include "light/CDError.hpp"
 #include "light/CDTable.hpp"
 #include "light/CDVector.hpp"
 #include "world/CDRayleighLight.hpp"
 
 using namespace malus;
+using malus::testing::scattered;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
@@ -23,21 +25,6 @@ double apart(const CDStokesVector& a, const CDStokesVector& b) {
   return most;
 }
 const std::vector<double> views{0.3, 0.6, 0.95, 1.0};
-
-CDMuellerMatrix muellerOf(const CDScatteringMatrix& f) {
-  return CDMuellerMatrix(std::array<double, 16>{f.a1, f.b1, 0, 0, f.b1, f.a2, 0, 0, 0, 0, f.a3,
-                                                f.b2, 0, 0, -f.b2, f.a4});
-}
-
-// Light scattered from one direction into another, in the axes of rayFrame(k, +z), by vectors.
-CDStokesVector scattered(const CDScatterer& scatterer, CDStokesVector light,
-                         const CDVector& from, const CDVector& to) {
-  const CDVector up{0, 0, 1}, s = normalized(cross(from, to));
-  const CDRayFrame in{s, cross(from, s), from}, out{s, cross(to, s), to};
-  light.rotate(frameRotation(rayFrame(from, up), in));
-  light = muellerOf(scatterer.matrix(dot(from, to))) * light;
-  return light.rotate(frameRotation(out, rayFrame(to, up)));
-}
 
 // Travel direction: u upwards, azimuth clockwise from the sunbeam's.
 CDVector travel(double u, double phi) {

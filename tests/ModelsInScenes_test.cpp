@@ -90,7 +90,7 @@ TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
   const Scratch scratch;
   json scene = mixedScene();
   scene["materials"]["copper-015"] = {{"model", "layered-paint"}, {"pigment_n", 2.75},
-                                      {"radius", 110},            {"concentration", 0.1},
+                                      {"radius", 110},            {"pvc", 0.1},
                                       {"thickness", 20},          {"sigma", 0.1}};
   put(scratch / "s.json", scene.dump(1));
   const CDFrame frame = renderScene(readScene(scratch / "s.json"));

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "ScatteredOnce.hpp"
 #include "light/CDError.hpp"
 #include "world/CDLayeredLight.hpp"
 
 using namespace malus;
+using malus::testing::scattered;
 
 namespace {
 constexpr double pi = std::numbers::pi;
@@ -27,19 +29,6 @@ BRDFLayeredPaint paint(double binder, const std::vector<CDPaintLayer>& layers, d
                        double sigma = 0, int streams = 0) {
   const CDPaintSurface face(flat(binder), {}, sigma);
   return BRDFLayeredPaint(face, paintVolume(face, layers, flat(substrate), streams));
-}
-CDMuellerMatrix muellerOf(const CDScatteringMatrix& f) {
-  return CDMuellerMatrix(std::array<double, 16>{f.a1, f.b1, 0, 0, f.b1, f.a2, 0, 0, 0, 0, f.a3,
-                                                f.b2, 0, 0, -f.b2, f.a4});
-}
-// Light of a beam `from` scattered once into `to`, both directions of travel, in the axes about +z.
-CDStokesVector scattered(const CDScatterer& scatterer, CDStokesVector light,
-                         const CDVector& from, const CDVector& to) {
-  const CDVector up{0, 0, 1}, s = normalized(cross(from, to));
-  const CDRayFrame in{s, cross(from, s), from}, out{s, cross(to, s), to};
-  light.rotate(frameRotation(rayFrame(from, up), in));
-  light = muellerOf(scatterer.matrix(dot(from, to))) * light;
-  return light.rotate(frameRotation(out, rayFrame(to, up)));
 }
 }  // namespace
 
@@ -160,6 +149,20 @@ TEST(PigmentLightInvariant, ThickerIsWhiterAndStreamsDoNotMatter) {
     for (int j = 0; j < 4; ++j)
       EXPECT_NEAR(few.getMueller(i, j), many.getMueller(i, j), 2e-4 * few.getScalar())
           << i << j;  // harmonics left out
+}
+
+// Views a hair to both sides of the normal are the same view: odd harmonics must vanish there like the sine.
+TEST(PigmentLightIdentity, NothingJumpsAcrossTheNormal) {
+  const BRDFLayeredPaint dark = paint(1.5, {coat(1.8, 0.4, 50)}, 0);
+  const auto at = [&](double degrees) {
+    const auto g = CDBRDFGeometry::fromDegrees(45, std::abs(degrees), degrees < 0 ? 0 : 180);
+    return dark.getBRDF(g).at(0);
+  };
+  for (const auto& [row, column] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+    EXPECT_NEAR(at(-1e-4).getMueller(row, column), at(1e-4).getMueller(row, column),
+                1e-5 * at(0).getScalar());
+  EXPECT_GT(std::abs(at(-5).getMueller(1, 0) - at(5).getMueller(1, 0)),
+            1e-3 * at(0).getScalar());
 }
 
 // Large grains, whose forward peak wants many streams: still no light lost or made.

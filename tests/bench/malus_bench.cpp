@@ -194,7 +194,7 @@ const std::vector<NamedModel>& namedModels() {
       {"dirsig", {{"reflectance", "0.1"}, {"height", "1"}, {"width", "20"}}},
       {"glossy-coating", {{"n", "1.5"}, {"reflectance", "0.5"}, {"sigma", "0.1"}}},
       {"layered-paint",
-       {{"pigment_n", "2.75"}, {"radius", "110"}, {"concentration", "0.1"}, {"thickness", "5"}, {"sigma", "0.1"}}},
+       {{"pigment_n", "2.75"}, {"radius", "110"}, {"pvc", "0.1"}, {"thickness", "5"}, {"sigma", "0.1"}}},
       {"rough-water", {{"wind", "5"}, {"reflectance", "0.02"}}},
       {"beard-maxwell", {{"n", "1.5"}, {"k", "0"}, {"bias", "0.002"}, {"sigma", "0.2"}, {"rho_v", "0.01"}}},
       {"nadal-breon", {{"reflectance", "0.1"}, {"rho", "0.03"}, {"beta", "8"}}},
