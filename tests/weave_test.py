@@ -23,6 +23,7 @@ import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
 import verdicts  # noqa: E402
+import weave  # noqa: E402
 from problems import Problem  # noqa: E402
 
 FIRST = r"""\chapter{Reflection}\label{ch:first}
@@ -132,6 +133,19 @@ class WovenBook(Workshop):
         self.assertRegex(self.first, r'chapter <a href="matter-second.html#ch:second"[^>]*>2</a>'.replace(" ", "[ \u00a0]", 1))
         self.assertIn('<section id="the-code"', self.first)
         self.assertRegex(self.second, r'<a href="light-first.html#fig:F3.9"[^>]*>1.1</a>')
+
+    def test_a_part_has_a_page_with_the_first_sentence_of_each_chapter_and_chapters_lead_up_to_it(self):
+        part = self.get("light.html")
+        self.assertIn("<h1>Light</h1>", part)
+        self.assertRegex(part, r'(?s)<a href="light-first.html">Reflection</a><p>The reflectance is computed by .*chapter.2\.</p></li>')
+        self.assertIn('<a rel="up" href="light.html">Light</a>', self.first)
+        self.assertIn('<a rel="prev" href="light.html">Light</a>', self.first)
+        self.assertIn('<a rel="next" href="matter.html">Matter</a>', self.first)
+
+    def test_a_formula_keeps_its_brackets_and_its_comma(self):
+        self.assertRegex(self.first, r'(?s)<span class="glued"><math[^>]*alttext="n=2".*?</math>\.</span>')
+        glued = weave.Finisher.GLUED.sub(weave.Finisher.glue, '(<math display="inline">x</math>), <math display="inline">y</math> z')
+        self.assertEqual(glued, '<span class="glued">(<math display="inline">x</math>),</span> <math display="inline">y</math> z')
 
     def test_chunks_are_numbered_in_the_order_of_the_book_and_joined_both_ways(self):
         self.assertRegex(self.first, r'(?s)id="chunk-reflect-a-ray">.*?href="#chunk-reflect-a-ray">1</a>')

@@ -51,6 +51,7 @@ class Finisher:
     FENCE = re.compile(r"(<mo)(>[(\[|‖{]</mo><mtable)|(</mtable><mo)(>[)\]|‖}]</mo>)")
     PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
     PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
+    KINDS = {"as derived": " cards errata", "left open": " cards left-open", "ltx_eqn": " formula"}  # what a table's head says
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
 
     def __init__(self, links, chapters, listings):
@@ -61,8 +62,9 @@ class Finisher:
         fill = lambda match: self.listings.chunk(self.chunks[match[1]], self.links.anchors[match[1]][1])
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
-        # the style sheet says how small a table is; a formula whose every letter has a size has no small indices
-        html = re.sub(r' mathsize="\d+%"| style="font-size:\d+%;"', "", html)
+        # paper's sizes: the style sheet says how small a table is and the browser how wide its columns are; a formula
+        # whose every letter has a size would have no small indices
+        html = re.sub(r' mathsize="\d+%"| style="font-size:\d+%;"| style="width:[\d.]+pt;"', "", html)
         # what may be wider than a phone scrolls by itself
         html = self.TABLE.sub(self.scroll, html)
         html = self.GLUED.sub(self.glue, html)
@@ -82,7 +84,8 @@ class Finisher:
 
     @staticmethod
     def scroll(table):
-        kind = " errata" if "as derived" in table[0] else " formula" if "ltx_eqn_table" in table[0][:100] else ""
+        head = table[0][:table[0].find("</tr>")]
+        kind = next((kind for words, kind in Finisher.KINDS.items() if words in head), "")
         return f'<div class="scroll{kind}">{table[0]}</div>'
 
     @staticmethod
@@ -219,7 +222,7 @@ class HtmlBook(book.Book):
         page = Page(part.folder, "", "")
         page.title = part.title
         chapters = "\n".join(f'<li value="{chapter.chapter}"><a href="{chapter.file}">{chapter.title}</a>'
-                             f'<p>{opening(chapter.body)}</p></li>' for chapter in part.pages)
+                             f'{opening(chapter.body)}</li>' for chapter in part.pages)
         page.body = (f'<header class="part"><p class="kind">Part</p><h1>{part.title}</h1><p class="about">{part.about}</p></header>\n'
                      f'<ol class="chapters">\n{chapters}\n</ol>')
         return page
@@ -341,11 +344,11 @@ class HtmlBook(book.Book):
 
 
 def opening(body):
-    """The first sentence of a chapter, without its links, citations and notes."""
+    """A paragraph with the first sentence of a chapter, without its links, citations and notes."""
     paragraph = re.search(r'<p class="ltx_p">(.*?)</p>', body, re.DOTALL)
     html = re.sub(r"\s*<cite\b.*?</cite>|</?a\b[^>]*>", "", paragraph[1] if paragraph else "", flags=re.DOTALL)
     sentence = re.match(r".{30,}?[a-z0-9)”>][.?!](?=\s+[A-Z“(]|\s*$)", html.split('<span class="ltx_note')[0].strip(), re.DOTALL)
-    return sentence[0] if sentence and balanced(sentence[0]) else ""
+    return f"<p>{sentence[0]}</p>" if sentence and balanced(sentence[0]) else ""
 
 
 def balanced(html):
