@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -109,4 +110,41 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "fit.csv"));
   EXPECT_NE(malusIn(scratch.path, "fit --samples angle.csv").err.find("angle.csv:3"),
             std::string::npos);
+}
+
+// A coating as a sum of order five is read back with its reflectance: one fiftieth, as good as the sum is.
+TEST(CommandFitInvariant, ASumIsReadBack) {
+  const Scratch scratch;
+  const std::string coating =
+      "--model glossy-coating --param n=1.5 --param reflectance=0.8 --param sigma=0.4 ";
+  const Outcome fit =
+      malusIn(scratch.path, "fit --basis 5 " + coating +
+                                "--wavelength-nm 500 --wavelength-nm 600 --out sum.csv");
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_EQ(fit.out, "");
+  EXPECT_NE(fit.err.find("coefficients a wavelength: error "), std::string::npos) << fit.err;
+  const auto dhr = [&](const std::string& model) {
+    return tableOf(
+               malusIn(scratch.path, "brdf " + model + " --dhr --theta-i 30 --format csv").out)
+        .number(0, "dhr");
+  };
+  EXPECT_NEAR(dhr("--model basis --param file=sum.csv") / dhr(coating), 1, 0.02);
+  EXPECT_GT(std::abs(dhr("--model lambertian --param reflectance=0.7") / dhr(coating) - 1),
+            0.02);  // negative control
+  for (const std::string bad :
+       {"--basis 5", "--basis 5.5 " + coating, "--basis 13 " + coating, "--basis x " + coating,
+        "--basis 5 --samples plate.csv " + coating, coating,
+        "--basis 5 --model lambertian --param reflectance=0",
+        "--basis 5 " + coating + "--wavelength-nm 500 --wavelength-nm 500",
+        "--basis 5 " + coating + "--wavelength-nm 0"}) {
+    const Outcome refused = malusIn(scratch.path, "fit " + bad);
+    EXPECT_EQ(refused.code, 2) << bad;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    EXPECT_EQ(refused.out, "");
+  }
+  EXPECT_EQ(malusIn(scratch.path,
+                    "brdf --model basis --param file=sum.csv --wavelength-nm 650 "
+                    "--dhr --theta-i 30")
+                .code,
+            2);
 }
