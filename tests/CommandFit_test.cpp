@@ -131,10 +131,10 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   EXPECT_NEAR(dhr("--model basis --param file=sum.csv") / dhr(coating), 1, 0.02);
   EXPECT_GT(std::abs(dhr("--model lambertian --param reflectance=0.7") / dhr(coating) - 1),
             0.02);  // negative control
-  for (const std::string bad :
-       {"--basis 5", "--basis 5.5 " + coating, "--basis 13 " + coating, "--basis x " + coating,
+  for (const std::string& bad :
+       {std::string("--basis 5"), "--basis 5.5 " + coating, "--basis 13 " + coating, "--basis x " + coating,
         "--basis 5 --samples plate.csv " + coating, coating,
-        "--basis 5 --model lambertian --param reflectance=0",
+        std::string("--basis 5 --model lambertian --param reflectance=0"),
         "--basis 5 " + coating + "--wavelength-nm 500 --wavelength-nm 500",
         "--basis 5 " + coating + "--wavelength-nm 0"}) {
     const Outcome refused = malusIn(scratch.path, "fit " + bad);
