@@ -24,7 +24,7 @@ TEST(OwnSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
                                                   {"rotated", CDVerdict::reproduced},
                                                   {"mixture", CDVerdict::reproduced}};
   EXPECT_EQ(verdictsOf(measured()), expected);
-  EXPECT_EQ(measured().pictures().size(), 2u);
+  EXPECT_EQ(measured().pictures().size(), 3u);
 }
 
 // The order of the samplings at 64 rays, in every component, is what the chapter's prose rests on.
