@@ -22,6 +22,7 @@
 #include "matter/BRDFTorranceSparrow.hpp"
 #include "matter/MuellerTables.hpp"
 #include "program/Models.hpp"
+#include "world/CDSun.hpp"
 
 using namespace malus;
 
@@ -201,6 +202,7 @@ const std::vector<NamedModel>& namedModels() {
       {"robertson-sandford", {{"emissivity", "0.5"}, {"diffuse", "0.3"}, {"b", "0.2"}, {"e", "0.3"}}},
       {"nefds", {{"file", tables().lasers}, {"dhr", "0.4"}, {"dhr_zenith", "20"}}},
       {"measured", {{"file", tables().matrices}}},
+      {"basis", {{"file", (solarSpectrumFile().parent_path() / "basis-coating.csv").string()}}},
   };
   return models;
 }
