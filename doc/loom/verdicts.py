@@ -23,7 +23,7 @@ VERDICTS = ("reproduced", "erratum", "differs", "not testable")
 ROUGH = r">{\raggedright\arraybackslash}p"  # a narrow column, its right edge as it comes
 BEGIN_ERRATA = (r"{\litsmall\begin{longtable}{" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.12, .19, .19, .3, .13))
                 + r"}\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
-BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.32\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
+BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.28\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
                + r"}\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
 END = r"\bottomrule\end{longtable}}"
 
