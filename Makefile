@@ -17,11 +17,11 @@ TEST    := python3-gdal python3-spectral tidy
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
 
-# What the book on paper wants besides; asked for only by make pdf.
+# What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all test book pdf reproduce bench format dist sanitize clang coverage fuzz fresh-machine clean help
-.PHONY: need-program need-book need-test need-browser need-paper
+.PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
@@ -31,8 +31,8 @@ all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-test need-browser $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
-	@cmake --build $(BUILD) -j $(JOBS) --target all everything
+test: need-test need-browser need-press $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
+	@cmake --build $(BUILD) -j $(JOBS) --target all everything $$(command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
 book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
@@ -113,6 +113,9 @@ need-test:
 
 need-browser:
 	@$(NEED) $(BROWSER) || echo "The book's pages are not looked at in a browser."
+
+need-press:
+	@$(NEED) $(PAPER) || echo "The book is not printed, and so what LaTeX says of it is not heard."
 
 need-paper:
 	@$(NEED) $(PROGRAM) $(BOOK) $(PAPER)
