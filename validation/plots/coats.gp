@@ -6,7 +6,7 @@ set tmargin at screen 0.88; set bmargin at screen 0.21
 set lmargin at screen 0.08; set rmargin at screen 0.47
 set title 'reflectance of the body, straight down'
 set logscale x; set xrange [0.1:500]; set xtics (0.1, 1, 10, 100)
-set xlabel 'thickness [{/Symbol m}m]'
+set xlabel 'thickness [µm]'
 set yrange [0:1]; set ytics 0.2
 set key bottom right Left reverse samplen 2
 plot 'coats.csv' using 'thickness_um':'over white' with lines linetype 2 title 'over white', \

@@ -13,7 +13,7 @@ set label 1 'T_0' at 20,0.9 textcolor rgb ink
 set label 2 'T_1' at 20,0.06 textcolor rgb ink
 set arrow 1 from 0,0 to 90,0 nohead linestyle 12
 plot 'face.csv' using 'zenith_deg':'smooth_T0' with lines linetype 1 title 'smooth', \
-     '' using 'zenith_deg':'rough_T0' with lines linetype 2 title '{/Symbol s} = 0.3', \
+     '' using 'zenith_deg':'rough_T0' with lines linetype 2 title 'σ = 0.3', \
      '' using 'zenith_deg':'film_T0' with lines linetype 3 title 'quarter-wave film', \
      '' using 'zenith_deg':'smooth_T1' with lines linetype 1, \
      '' using 'zenith_deg':'rough_T1' with lines linetype 2
@@ -24,5 +24,5 @@ set xlabel 'angle in the binder [deg]'
 set yrange [0:1.05]
 set key at 50,0.5 left Left reverse
 plot 'face-inside.csv' using 'inside_deg':'smooth' with lines linetype 1 title 'smooth', \
-     '' using 'inside_deg':'rough' with lines linetype 2 title '{/Symbol s} = 0.3'
+     '' using 'inside_deg':'rough' with lines linetype 2 title 'σ = 0.3'
 unset multiplot

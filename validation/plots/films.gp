@@ -10,7 +10,7 @@ set yrange [0:0.07]; set ytics 0.01; set ylabel 'reflectance'
 set key top right
 plot 'films.csv' using 'wavelength_nm':'bare' with lines title 'bare glass', \
      '' using 'wavelength_nm':'quarter wave' with lines title 'quarter wave at 550 nm', \
-     '' using 'wavelength_nm':'2 um' with lines title '2 {/Symbol m}m of the same'
+     '' using 'wavelength_nm':'2 um' with lines title '2 µm of the same'
 set lmargin at screen 0.58; set rmargin at screen 0.97
 set title 'at 550 nm'
 set xrange [0:90]; set xtics 30; set xlabel 'angle of incidence [deg]'

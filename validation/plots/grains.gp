@@ -4,7 +4,7 @@ load style
 set multiplot
 set tmargin at screen 0.88; set bmargin at screen 0.21
 set lmargin at screen 0.08; set rmargin at screen 0.47
-set title 'light turned back, per {/Symbol m}m of pigment'
+set title 'light turned back, per µm of pigment'
 set logscale x; set xrange [20:1000]; set xtics (20, 50, 100, 200, 500, 1000)
 set xlabel 'diameter [nm]'
 set yrange [0:18]; set ytics 5
