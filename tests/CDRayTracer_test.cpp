@@ -140,6 +140,41 @@ TEST(CDRayTracerInvariant, ParallelBundlesAnswerAsSingleRaysDo) {
   EXPECT_GT(missed, 1000);
 }
 
+// From none to sixteen rays in each of sixteen bundles: packets that are full, and the odd one at the end.
+TEST(CDRayTracerInvariant, ManyBundlesAnswerAsSingleRaysDo) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  CDRandom random(4);
+  int met = 0, missed = 0, others = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<CDRayBundle> bundles(16);
+    for (CDRayBundle& rays : bundles) {
+      rays.origin = {4 * random.uniform() - 2, 4 * random.uniform() - 2, 1.5 * random.uniform() + 0.01};
+      rays.active = static_cast<std::uint32_t>(random() & random() & 0xffff);
+      for (int k = 0; k < 16; ++k) {
+        const CDVector d = randomDirection(random);
+        rays.x[k] = float(d.x), rays.y[k] = float(d.y), rays.z[k] = float(d.z);
+      }
+    }
+    std::vector<std::uint32_t> blocked(16, 0xffffu);
+    tracer.occluded(bundles, blocked);
+    for (std::size_t b = 0; b < 16; ++b) {
+      const CDRayBundle& rays = bundles[b];
+      EXPECT_EQ(blocked[b] & ~rays.active, 0u);
+      others += (blocked[b] ^ tracer.occluded(bundles[(b + 1) % 16])) & rays.active ? 1 : 0;
+      for (int k = 0; k < 16; ++k) {
+        if (!(rays.active >> k & 1)) continue;
+        EXPECT_EQ(tracer.occluded(rays.origin, {rays.x[k], rays.y[k], rays.z[k]}),
+                  bool(blocked[b] >> k & 1));
+        ++(blocked[b] >> k & 1 ? met : missed);
+      }
+    }
+  }
+  EXPECT_GT(met, 1000) << "negative control: either answer is given";
+  EXPECT_GT(missed, 1000);
+  EXPECT_GT(others, 1000) << "negative control: the answer belongs to another bundle";
+}
+
 TEST(CDRayTracerInvariant, NothingLeaksBetweenTriangles) {
   const CDSceneGeometry scene = pyramids({}, false);
   const CDRayTracer tracer(scene);

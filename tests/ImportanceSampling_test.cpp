@@ -190,8 +190,8 @@ TEST(ImportanceSamplingIdentity, MattSurfaceGivesEveryDirectionTheSameWeight) {
   const auto sky = uniformSky(1);
   const CDSurfaceAxes axes({0, 0, 1});
   CDHemisphereRays rays;
-  importanceSampling({*brdf, *sky, axes, {0.6, 0, 0.8}, 1}, 50, true, {1, 0, 0, 0, 0, 0, 0},
-                     rays);
+  CDSobolReader points(CDSobolPoints(1), 3);
+  importanceSampling({*brdf, *sky, axes, {0.6, 0, 0.8}, 1}, 50, points, 0, rays);
   ASSERT_EQ(rays.size(), 50u);
   for (const float weight : rays.weight) EXPECT_FLOAT_EQ(weight, float(pi / 50));
 }
@@ -201,7 +201,8 @@ TEST(ImportanceSamplingIdentity, AViewerInThePlaneOfTheSurfaceGetsNothing) {
   const auto sky = uniformSky(1);
   const CDSurfaceAxes axes({0, 0, 1});
   CDHemisphereRays rays;
-  importanceSampling({*brdf, *sky, axes, {1, 0, 0}, 1}, 50, true, {1, 0, 0, 0, 0, 0, 0}, rays);
+  CDSobolReader points(CDSobolPoints(1), 3);
+  importanceSampling({*brdf, *sky, axes, {1, 0, 0}, 1}, 50, points, 0, rays);
   EXPECT_EQ(rays.size(), 0u);
 }
 

@@ -273,15 +273,27 @@ TEST(LowDiscrepancyInvariant, ErrorFallsFasterThanThatOfRandomNumbers) {
   EXPECT_NEAR(slope(randomAverage), -0.5, 0.2) << "negative control";
 }
 
-// A block of sixteen has the bits of sixteen single points, wherever it begins.
-TEST(LowDiscrepancyIdentity, SixteenPointsAreThePointsOneByOne) {
+// A block of points has the bits of so many single points, wherever it begins.
+TEST(LowDiscrepancyIdentity, ABlockOfPointsIsThePointsOneByOne) {
   for (const std::uint32_t first : {0u, 16u, 1000u, 65530u, 4000000u}) {
     const CDSobolPoints points(3, 1, first);
     const CDSobolPoints::Block block = points.points(first);
     for (std::uint32_t i = 0; i < CDSobolPoints::block; ++i)
       for (std::size_t d = 0; d < CDSobolPoints::dimensions; ++d) {
-        EXPECT_EQ(block[d][i], points(first + i)[d]) << first + i;
-        EXPECT_NE(block[d][i], points(first + i + 1)[d]) << "negative control: the next point";
+        EXPECT_EQ(block[i][d], points(first + i)[d]) << first + i;
+        EXPECT_NE(block[i][d], points(first + i + 1)[d]) << "negative control: the next point";
       }
+  }
+}
+
+// A reader keeps a block, and must notice when another one is wanted: forth, back, and again.
+TEST(LowDiscrepancyIdentity, AReaderGivesThePointsInAnyOrder) {
+  const CDSobolPoints points(3, 1, 4);
+  CDSobolReader all(points, 4), three(points, 3);
+  for (const std::uint32_t index : {0u, 1u, 7u, 8u, 3u, 3u, 65535u, 65536u, 65543u, 1u}) {
+    EXPECT_EQ(all(index), points(index)) << index;
+    EXPECT_NE(all(index), points(index + 1)) << "negative control: the next point";
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_EQ(three(index)[d], points(index)[d]) << index;
+    EXPECT_EQ(three(index)[3], 0) << "nobody wanted it";
   }
 }

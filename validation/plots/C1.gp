@@ -1,7 +1,7 @@
 # Error of the unpolarised prediction against the orientation of linearly polarised light.
 load style
-set xlabel 'angle of linear polarisation from the perpendicular to the plane of incidence [deg]'
-set ylabel "polarised minus unpolarised [%]"
+set xlabel 'angle of linear polarisation, from the perpendicular s [deg]'
+set ylabel "polarised minus\nunpolarised [%]"
 set xrange [0:180]; set xtics 30
 plot 0 with lines linestyle 12, \
      'orientation.csv' using 'AoLP_deg':'error_DoLP1' with lines linetype 1 title 'DoLP 1', \

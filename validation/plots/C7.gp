@@ -1,5 +1,5 @@
 # C7: error of the index recovered by the experiment of chapter 8, over n and k (map.csv) and noise (noise.csv).
-width = 1000; height = 440
+width = 860; height = 420
 load style
 set multiplot
 set lmargin 11; set rmargin 3

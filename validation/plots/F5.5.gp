@@ -1,5 +1,5 @@
 # Figure 5.5: a synthetic scan (line), the modified Cauchy distribution fitted to it (dashes), and the difference.
-width = 900; height = 400
+width = 840; height = 400
 load style
 set multiplot
 set lmargin 11; set rmargin 3

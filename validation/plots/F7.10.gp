@@ -1,5 +1,5 @@
 # Figure 7.10: in-plane DoLP of aluminium for a family of incidences, and its near-normal part enlarged.
-width = 900; height = 420
+width = 840; height = 420
 load style
 of(p, v, c) = abs(column(p) - v) < 1e-6 ? column(c) : NaN
 set multiplot

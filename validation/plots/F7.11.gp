@@ -1,5 +1,5 @@
 # Figure 7.11: out-of-plane DoLP of aluminium, near-normal and oblique incidence.
-width = 900; height = 420
+width = 840; height = 420
 load style
 of(p, v, c) = abs(column(p) - v) < 1e-6 ? column(c) : NaN
 set multiplot

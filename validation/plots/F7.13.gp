@@ -10,7 +10,7 @@ set xlabel 'rays from the first intersection'
 set ylabel 'mean S_0 / converged'
 set key top right samplen 2
 set title 'convergence' font ',12'
-set yrange [0.97:1.1]
+set yrange [0.97:1.12]
 plot 1 with lines linestyle 12, \
      'convergence.csv' using 'rays':'bright' with linespoints linetype 1 title 'Lambertian, bright', \
      'convergence.csv' using 'rays':'dark' with linespoints linetype 2 title 'Lambertian, dark', \

@@ -8,9 +8,9 @@ set yrange [0:1.05]; set ytics 0.25
 set origin 0,0.36; set size 1,0.64
 set ylabel 'degree of polarisation'
 set format x ''
-set key top left Left reverse
+set key at graph 0.96, graph 0.22 font ',13' width -2
 plot 'dop.csv' using 'zenith_deg':'fresnel' with lines linetype 1 title 'Fresnel, n = 2', \
-     '' using 'zenith_deg':'torrance_sparrow' every 6 with points linetype 2 pointsize 0.6 title 'Torrance-Sparrow, sigma = 0.05'
+     '' using 'zenith_deg':'torrance_sparrow' every 6 with points linetype 2 pointsize 0.6 title 'Torrance-Sparrow, σ = 0.05'
 set yrange [*:*]
 set origin 0,0; set size 1,0.38
 set format x '%g'; set xlabel 'zenith of incidence and view [deg]'

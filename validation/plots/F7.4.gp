@@ -1,10 +1,10 @@
 # Figure 7.4: in-plane f00 of aluminium, smooth and rough.
-width = 900; height = 400
+width = 840; height = 400
 load style
 of(p, v, c) = abs(column(p) - v) < 1e-6 ? column(c) : NaN
 set multiplot
 set xrange [-30:90]; set xtics 30; set xlabel 'view zenith [deg]'
-set key top left Left reverse title 'sigma' samplen 2
+set key top left Left reverse title 'σ' samplen 2
 set lmargin 11; set rmargin 3
 set origin 0,0; set size 0.5,1
 set ylabel 'f_{00} [sr^{-1}]'; set title '(a) smooth'

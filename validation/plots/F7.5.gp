@@ -1,10 +1,10 @@
 # Figure 7.5: f10 and f20 against azimuth.
-width = 900; height = 400
+width = 840; height = 400
 load style
 of(p, v, c) = abs(column(p) - v) < 1e-6 ? column(c) : NaN
 set multiplot
 set xrange [90:270]; set xtics 45; set xlabel 'view azimuth [deg]'
-set key top right Left reverse title 'sigma' samplen 2
+set key top right Left reverse title 'σ' samplen 2
 set lmargin 11; set rmargin 3
 set origin 0,0; set size 0.5,1
 set ylabel 'f_{10} [sr^{-1}]'

@@ -1,5 +1,5 @@
 # Figure 7.8: in-plane f00 and f23 against k.
-width = 900; height = 400
+width = 840; height = 400
 load style
 of(p, v, c) = abs(column(p) - v) < 1e-6 ? column(c) : NaN
 set multiplot

@@ -1,5 +1,5 @@
 # Finding 3: five hypotheses on the diffuse term, what table 7.1 demands of it, and the DoLP of aluminium under each.
-width = 1000; height = 440
+width = 860; height = 420
 load style
 set multiplot
 set xrange [0:90]; set xtics 15; set xlabel 'view zenith [deg]'

@@ -5,7 +5,7 @@ set ylabel "ours minus printed,\nhalf units of the last digit"
 set xtics rotate by -60 left scale 0.3
 set yrange [-6:12]
 set xrange [0:*]
-set key top right
+set key top right opaque
 set rmargin 6
 plot 1 with lines linestyle 12, -1 with lines linestyle 12, \
      'residuals.csv' using 'number':'full_residual':xticlabels(stringcolumn('label')) with points linetype 2 pointsize 0.9 title 'full matrix', \

@@ -1,5 +1,5 @@
 # X.sky: the polarisation around the sun (around.csv), and the neutral points (around-marks.csv).
-width = 960; height = 390
+width = 860; height = 360
 load style
 set size ratio -1
 set xrange [-30:30]; set yrange [-30:30]
@@ -14,8 +14,8 @@ along(name) = longest * column(name . '_y')
 set style textbox opaque noborder fillcolor rgb '#ffffff' margins 0.3,0.3
 set multiplot
 do for [i = 1:3] {
-  set lmargin at screen (i - 1) * 0.312 + 0.075
-  set rmargin at screen (i - 1) * 0.312 + 0.36
+  set lmargin at screen (i - 1) * 0.308 + 0.085
+  set rmargin at screen (i - 1) * 0.308 + 0.365
   set title Title[i] offset 0,-0.5
   if (i == 1) { set ylabel 'above the sun [deg]' offset 1.2,0; set ytics format '%g' }
   if (i > 1) { unset ylabel; set ytics format '' }

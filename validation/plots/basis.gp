@@ -1,5 +1,5 @@
 # X.basis: error of a sum of basis functions, and matrices that do not exist, against the number of coefficients.
-width = 1000; height = 440
+width = 860; height = 420
 load style
 of(s, c) = stringcolumn('surface') eq s ? column(c) : NaN
 set multiplot

@@ -1,5 +1,5 @@
 # X.sky: three maps of the dome (dome.csv) with the neutral points (marks.csv); north up, east right.
-width = 1080; height = 350
+width = 880; height = 292
 load style
 unset border; unset tics; unset grid; set key off
 set size ratio -1
@@ -7,7 +7,7 @@ set xrange [-96:96]; set yrange [-96:96]
 set parametric; set trange [0:2*pi]
 set datafile missing '?'  # an image needs all its pixels; those outside of the dome are nan
 set tmargin at screen 0.90; set bmargin at screen 0.04
-set cbtics font ',10' scale 0.5
+set cbtics font ',11' scale 0.5
 beside(x, y) = abs(y) > 75 ? x - 15 : x + 6  # no room beside a mark at the rim: its name stands further in
 under(y) = abs(y) > 75 ? y - 11*sgn(y) : y
 array Column[3]; Column[1] = 'I'; Column[2] = 'DoLP'; Column[3] = 'AoLP_deg'

@@ -1,5 +1,5 @@
 # X.emission: DoLP and amount of emitted light over the zenith angle (dolp.csv, emissivity.csv).
-width = 900; height = 420
+width = 840; height = 420
 load style
 stats 'dolp.csv' using 1 skip 1 nooutput
 curves = STATS_columns
@@ -8,10 +8,10 @@ set xrange [0:90]; set xtics 15
 set format x '%g°'
 set xlabel 'zenith angle'
 set yrange [0:1]
-set key top left
+unset key
 set title 'degree of linear polarisation'
 plot for [i=2:curves] 'dolp.csv' using 1:i with lines linetype i-1 title columnheader(i)
-unset key
+set key at graph 0.04, graph 0.42 left Left reverse
 set title 'emissivity'
-plot for [i=2:curves] 'emissivity.csv' using 1:i with lines linetype i-1
+plot for [i=2:curves] 'emissivity.csv' using 1:i with lines linetype i-1 title columnheader(i)
 unset multiplot

@@ -1,6 +1,6 @@
 # Figures 3.1 to 3.3: the field along z at one moment (field.csv), and the path of the tip in the plane
 # z = 0 over one period, seen looking back at the source (tip.csv).
-width = 900
+width = 840
 height = 400
 load style
 

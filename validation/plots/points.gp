@@ -1,5 +1,5 @@
 # X.sampling: three sets of 64 points (points.csv), the cells of the 8 x 8 grid, and their shadows on both axes.
-width = 900; height = 350
+width = 840; height = 326
 load style
 set size ratio -1
 set xrange [-0.1:1.02]; set yrange [-0.1:1.02]
