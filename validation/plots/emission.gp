@@ -8,10 +8,10 @@ set xrange [0:90]; set xtics 15
 set format x '%g°'
 set xlabel 'zenith angle'
 set yrange [0:1]
-set key top left
+unset key
 set title 'degree of linear polarisation'
 plot for [i=2:curves] 'dolp.csv' using 1:i with lines linetype i-1 title columnheader(i)
-unset key
+set key at graph 0.05, 0.62 left top Left reverse samplen 3
 set title 'emissivity'
-plot for [i=2:curves] 'emissivity.csv' using 1:i with lines linetype i-1
+plot for [i=2:curves] 'emissivity.csv' using 1:i with lines linetype i-1 title columnheader(i)
 unset multiplot
