@@ -1,5 +1,5 @@
 # X.emission: DoLP and amount of emitted light over the zenith angle (dolp.csv, emissivity.csv).
-width = 840; height = 420
+width = 900; height = 420
 load style
 stats 'dolp.csv' using 1 skip 1 nooutput
 curves = STATS_columns
@@ -11,7 +11,7 @@ set yrange [0:1]
 unset key
 set title 'degree of linear polarisation'
 plot for [i=2:curves] 'dolp.csv' using 1:i with lines linetype i-1 title columnheader(i)
-set key at graph 0.04, graph 0.42 left Left reverse
+set key at graph 0.05, 0.62 left top Left reverse samplen 3
 set title 'emissivity'
 plot for [i=2:curves] 'emissivity.csv' using 1:i with lines linetype i-1 title columnheader(i)
 unset multiplot
