@@ -47,7 +47,7 @@ do for [i = 1:panels] {
   set rmargin at screen (right * (panel + gap) + 4.0 + panel) / width
   set tmargin at screen 1 - (row * (panel + 26) + 24.0) / height
   set bmargin at screen 1 - (row * (panel + 26) + 24.0 + panel) / height
-  set title Title[i] font ',12' offset 0,-0.8
+  set title Title[i] font (strlen(Title[i]) > 24 ? ',10' : ',12') offset 0,-0.8
   set cbrange [Low[i]:High[i]]
   if (Map[i] eq 'signed') { @signed_map }
   if (Map[i] eq 'level') { @level_map }
