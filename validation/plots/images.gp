@@ -2,7 +2,8 @@
 #
 # <pictures>-panels.csv: title,column,low,high,map,across,unit: a row for each panel, in reading order. map is grey,
 # level, signed or hue; across is the number of panels in a row; unit is the legend of the colour bar. Where not all
-# panels have one stretch and one map, each has a colour bar of its own.
+# panels have one stretch and one map, each has a colour bar of its own; if only the last
+# differs, it has one below itself, and the others share theirs.
 # <pictures>.csv: x,y and the columns named there; x counts pixels from the left, y rows from the top.
 if (!exists("pictures")) pictures = 'images'
 panels_file = pictures . '-panels.csv'
@@ -15,16 +16,20 @@ unit = ''
 stats panels_file using (panels = panels + 1, Title[panels] = strcol('title'), \
   Column[panels] = strcol('column'), Low[panels] = column('low'), High[panels] = column('high'), \
   Map[panels] = strcol('map'), across = column('across'), unit = strcol('unit'), 0) nooutput
+differs(i) = Low[i] != Low[1] || High[i] != High[1] || Map[i] ne Map[1]
 one_bar = 1
-do for [i = 2:panels] {
-  if (Low[i] != Low[1] || High[i] != High[1] || Map[i] ne Map[1]) { one_bar = 0 }
+do for [i = 2:panels - 1] {
+  if (differs(i)) { one_bar = 0 }
 }
+last_apart = one_bar && panels > 2 && differs(panels)
+if (!last_apart && differs(panels)) { one_bar = 0 }
 down = ceil(panels / real(across))
 panel = 190
 gap = one_bar ? 8 : 70
-bar = one_bar ? 135 : 10
+bar = one_bar ? 130 : 10
+foot = last_apart ? 30 : 0
 width = across * (panel + gap) + bar
-height = down * (panel + 26) + 8
+height = down * (panel + 26) + 8 + foot
 load style
 
 set border 15 linecolor rgb '#b8b8b8' linewidth 0.5
@@ -42,25 +47,31 @@ do for [i = 1:panels] {
   set rmargin at screen (right * (panel + gap) + 4.0 + panel) / width
   set tmargin at screen 1 - (row * (panel + 26) + 24.0) / height
   set bmargin at screen 1 - (row * (panel + 26) + 24.0 + panel) / height
-  set title Title[i] font ',10' offset 0,-0.8
+  set title Title[i] font (strlen(Title[i]) > 24 ? ',10' : ',12') offset 0,-0.8
   set cbrange [Low[i]:High[i]]
   if (Map[i] eq 'signed') { @signed_map }
   if (Map[i] eq 'level') { @level_map }
   if (Map[i] eq 'grey') { @grey_map }
   if (Map[i] eq 'hue') { @hue_map }
+  set cbtics font ',12' scale 0.5 offset -0.8,0
   if (one_bar) {
     unset colorbox
-    if (i == panels) {
-      set colorbox user origin screen (across * (panel + gap) + 8.0) / width, (12.0 / height) \
-        size screen 12.0 / width, (height - 44.0) / height
-      set cblabel unit font ',10' offset 1,0
+    if (i == panels - last_apart) {
+      set colorbox user origin screen (across * (panel + gap) + 8.0) / width, (12.0 + foot) / height \
+        size screen 12.0 / width, (height - foot - 36.0) / height
+      set cblabel unit font ',12' offset 0,0
+    }
+    if (i == panels && last_apart) {
+      set colorbox horizontal user origin screen (right * (panel + gap) + 4.0) / width, 20.0 / height \
+        size screen real(panel) / width, 9.0 / height
+      set cbtics High[i] / 2.0 offset 0,0.6 format '%.2g'
+      unset cblabel
     }
   } else {
     set colorbox user origin screen (right * (panel + gap) + panel + 8.0) / width, \
       1 - (row * (panel + 26) + 24.0 + panel) / height size screen 8.0 / width, real(panel) / height
     set cblabel ''
   }
-  set cbtics font ',10' scale 0.5
   plot pictures . '.csv' using 'x':'y':Column[i] with image
 }
 unset multiplot
