@@ -3,7 +3,7 @@ width = 640; height = 480
 load style
 set logscale xy
 set xrange [7:56]; set xtics (8, 12, 16, 24, 32, 48)
-set yrange [0.001:0.5]
+set yrange [0.0005:0.5]
 set format y '10^{%T}'
 set xlabel 'steps of each polar angle'
 set ylabel 'relative error (rms)'
