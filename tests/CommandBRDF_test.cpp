@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -352,8 +353,11 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
   EXPECT_EQ(error(glass + "--table t.csv --steps 181"),
             "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
   EXPECT_EQ(error(glass + "--table t.csv --dhr"),
-            "command line: --table: excludes angles, --geometries, --dhr, --sample and --out; ask "
-            "for one thing at a time\n");
+            "command line: --table: excludes angles, --geometries, --dhr, --emissivity, --sample, "
+            "--format and --out; ask for one thing at a time\n");
+  for (const std::string other : {"--emissivity", "--format csv", "--theta-i 30", "--out a.csv"})
+    EXPECT_EQ(malusIn(scratch.path, glass + "--table u.csv " + other).code, 2) << other;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "u.csv"));
   EXPECT_EQ(error("brdf --model merl --param file=t.csv --param blue_nm=500 --param green_nm=550 "
                   "--param red_nm=600 " + geometry),
             "t.csv: does not begin with the sizes of a MERL file; give a complete file of measured "
@@ -462,6 +466,14 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {copper + "--theta-i 90 --dhr --out a.csv",
        "command line: --theta-i = 90 deg: must be 0 to 90, without 90; give the angle from the "
        "surface normal, in degrees"},
+      {copper + "--theta-i 30 --phi 180 --dhr --out a.csv",
+       "command line: --phi: has no meaning here; give only --theta-i"},
+      {copper + "--theta-r 30 --theta-i 20 --emissivity --out a.csv",
+       "command line: --theta-i: has no meaning here; give only --theta-r"},
+      {plate + "--seed 2 --out a.csv",
+       "command line: --seed: belongs to --sample; leave it out"},
+      {plate + "--steps 2 --out a.csv",
+       "command line: --steps: belongs to --table; leave it out"},
       {copper + "--geometries none.csv --out a.csv",
        "none.csv: cannot be opened; give the name of a readable CSV file"},
       {copper + "--geometries q.csv --theta-i 30 --out a.csv",

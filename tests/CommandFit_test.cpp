@@ -61,7 +61,7 @@ TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
 TEST(CommandFitPublished, GlassByHandAndTwoWavelengths) {
   const Scratch scratch;
   put(scratch / "glass.csv",
-      "wavelength_nm,theta_i_deg,Rs,Rp\n500,0,0.04,0.04\n500,45,0.0920134,0.00846647\n"
+      "wavelength_nm,theta_i_deg,Rs,Rp\n500,0,0.04,0.04\n500.0,45,0.0920134,0.00846647\n"
       "600,0,0.0625,0.0625\n600,45,0.1309819,0.0171563\n");
   const Outcome fit = malusIn(
       scratch.path, "fit --samples glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
@@ -86,6 +86,7 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
   put(scratch / "zero.csv", "theta_i_deg,Rs\n20,0\n");
   put(scratch / "normal.csv", "theta_i_deg,Rs,Rp\n0,0.8,0.8\n");
   put(scratch / "view.csv", "theta_i_deg,f00\n20,0.1\n");
+  put(scratch / "percent.csv", "theta_i_deg,Rs,Rp\n20,5,3.2\n60,17.8,0.2\n");
   put(scratch / "colour.csv", "wavelength_nm,theta_i_deg,Rs\n-5,20,0.1\n");
   for (const std::string& bad :
        {std::string("fit"), std::string("fit --samples absent.csv"),
@@ -93,6 +94,7 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
         std::string("fit --samples almost.csv"), std::string("fit --samples angle.csv"),
         std::string("fit --samples text.csv"), std::string("fit --samples zero.csv"),
         std::string("fit --samples view.csv"), std::string("fit --samples colour.csv"),
+        std::string("fit --samples percent.csv --fix sigma=0.1 --fix diffuse=0"),
         std::string("fit --samples normal.csv"),
         std::string("fit --samples normal.csv --fix sigma=0.1 --fix diffuse=0 --out fit.csv"),
         std::string("fit --samples normal.csv --fix sigma"),
@@ -108,8 +110,19 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(outcome.out, "") << bad;
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "fit.csv"));
-  EXPECT_NE(malusIn(scratch.path, "fit --samples angle.csv").err.find("angle.csv:3"),
-            std::string::npos);
+  const auto line = [&](const std::string& arguments) {
+    return malusIn(scratch.path, "fit --samples " + arguments).err;
+  };
+  EXPECT_NE(line("angle.csv").find("angle.csv:3"), std::string::npos);
+  EXPECT_EQ(line("percent.csv"),
+            "percent.csv:2: Rs = 5: is no reflectance; give a share of the light, 0 to 1, not per "
+            "cent\n");
+  EXPECT_EQ(line("zero.csv"),
+            "zero.csv:2: holds no value other than zero; leave the row out\n");
+  EXPECT_EQ(line("normal.csv --fix sigma"),
+            "command line: --fix = sigma: has no value; write --fix sigma=0.2\n");
+  EXPECT_EQ(line("normal.csv --fix n=1 --fix k=1 --fix sigma=1 --fix diffuse=1"),
+            "command line: --fix: fixes every parameter; leave at least one to be found\n");
 }
 
 // A coating as a sum of order five is read back with its reflectance: one fiftieth, as good as the sum is.
@@ -134,6 +147,7 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   for (const std::string& bad :
        {std::string("--basis 5"), "--basis 5.5 " + coating, "--basis 13 " + coating, "--basis x " + coating,
         "--basis 5 --samples plate.csv " + coating, coating,
+        "--basis 5 --error 0.1 " + coating,
         std::string("--basis 5 --model lambertian --param reflectance=0"),
         "--basis 5 " + coating + "--wavelength-nm 500 --wavelength-nm 500",
         "--basis 5 " + coating + "--wavelength-nm 0"}) {

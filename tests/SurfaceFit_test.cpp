@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -110,6 +111,12 @@ TEST(SurfaceFitInvariant, AWrongModelIsToldByChiSquared) {
   const CDSurfaceFit fit =
       fitSurface(laboratory(BRDFTorranceSparrow(1.5, 0.3, 0.35, smith), 0.001));
   EXPECT_GT(fit.chi2, 10.0 * static_cast<double>(fit.samples));
+  const auto told = [](const CDSurfaceFit& of) {
+    return std::any_of(of.remarks.begin(), of.remarks.end(),
+                       [](const std::string& r) { return r.starts_with("chi2 is "); });
+  };
+  EXPECT_TRUE(told(fit));
+  EXPECT_FALSE(told(fitSurface(laboratory(BRDFTorranceSparrow(1.5, 0.3, 0.35), 0.01))));
 }
 
 TEST(SurfaceFitInvariant, WhatCannotBeToldIsRefused) {

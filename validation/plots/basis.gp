@@ -7,10 +7,10 @@ set lmargin 11; set rmargin 3
 set logscale x; set xlabel 'coefficients'; set xrange [10:4000]
 set datafile missing NaN
 set origin 0,0; set size 0.5,1
-set logscale y; set ylabel 'error [%]'
-set key top right samplen 2
-plot for [s in 'copper water coating'] 'basis.csv' using 'coefficients':(of(s, 'error_percent')) with linespoints title s
+set logscale y; set ylabel 'error [%]'; set yrange [0.1:100]
+set key bottom left samplen 2
+plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'error_percent')) with linespoints title (s eq 'smooth' ? "copper, Smith's shadowing" : s)
 set origin 0.5,0; set size 0.5,1
-unset logscale y; set ylabel 'matrices that do not exist [%]'; set yrange [0:*]
-plot for [s in 'copper water coating'] 'basis.csv' using 'coefficients':(of(s, 'unrealizable_percent')) with linespoints title s
+unset logscale y; set ylabel 'matrices that do not exist [%]'; set yrange [0:60]; unset key
+plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'unrealizable_percent')) with linespoints title (s eq 'smooth' ? "copper, Smith's shadowing" : s)
 unset multiplot
