@@ -109,6 +109,12 @@ def indexed(text):
     return {html.unescape(name): about.strip() for name, about in rows}
 
 
+def unmapped(chain, files):
+    """Chapters of the floors to which no box of the page with the map leads."""
+    boxes = set(re.findall(r'<a href="([^"#]*)#[^"]*"><rect', chain))
+    return [file for file in files if "-" in file and file not in boxes]
+
+
 class Pages(unittest.TestCase):
     """What can be seen without a browser."""
 
@@ -131,6 +137,11 @@ class Pages(unittest.TestCase):
     def test_every_public_name_of_every_header_is_indexed_and_described(self):
         index = indexed(read(os.path.join(BOOK, "identifiers.html")))
         self.assertEqual({name: header for name, header in declared(HEADERS).items() if not index.get(name)}, {})
+
+    def test_every_chapter_is_a_box_of_the_map(self):
+        files = [os.path.basename(path) for path in pages()]
+        self.assertGreater(len([file for file in files if "-" in file]), 80)
+        self.assertEqual(unmapped(read(os.path.join(BOOK, "chain.html")), files), [])
 
     def test_every_item_of_the_inventory_is_reachable_from_the_last_part(self):
         """A row of its table leads to chapter and code, or owns that nothing is built yet."""
@@ -234,6 +245,10 @@ class NegativeControls(unittest.TestCase):
         self.assertAlmostEqual(contrast("#777777", "#ffffff"), 4.48, places=2)
         css = read(os.path.join(BOOK, "book.css"))
         self.assertTrue(faint(re.sub(r"--quiet: #[0-9a-f]{6}", "--quiet: #a0a0a0", css)))
+
+    def test_map(self):
+        chain = '<a href="light-A.html#ch:A"><rect x="1"/></a> <a href="light-B.html#ch:B">B</a>'
+        self.assertEqual(unmapped(chain, ["light-A.html", "light-B.html", "index.html"]), ["light-B.html"])
 
     @unittest.skipIf(lacks(shutil.which("ctags"), "universal-ctags"), lacks(shutil.which("ctags"), "universal-ctags"))
     def test_names(self):
