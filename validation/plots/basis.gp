@@ -8,9 +8,9 @@ set logscale x; set xlabel 'coefficients'; set xrange [10:4000]
 set datafile missing NaN
 set origin 0,0; set size 0.5,1
 set logscale y; set ylabel 'error [%]'; set yrange [0.1:100]
-set key bottom left samplen 2
-plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'error_percent')) with linespoints title (s eq 'smooth' ? "copper, Smith's shadowing" : s)
+set key at graph 0.02,0.34 left top Left reverse samplen 2
+plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'error_percent')) with linespoints title (s eq 'smooth' ? 'copper (Smith)' : s)
 set origin 0.5,0; set size 0.5,1
 unset logscale y; set ylabel 'matrices that do not exist [%]'; set yrange [0:60]; unset key
-plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'unrealizable_percent')) with linespoints title (s eq 'smooth' ? "copper, Smith's shadowing" : s)
+plot for [s in 'copper water coating smooth'] 'basis.csv' using 'coefficients':(of(s, 'unrealizable_percent')) with linespoints title (s eq 'smooth' ? 'copper (Smith)' : s)
 unset multiplot

@@ -3,7 +3,7 @@ width = 1000; height = 420
 load style
 of(i, c) = column('theta_i_deg') == i ? column(c) : NaN
 set multiplot
-set lmargin 9; set rmargin 3
+set lmargin 9; set rmargin 3; set bmargin 4.5; set tmargin 1.5
 set yrange [0:1.15]; set ytics 0.5
 set ylabel 'share of the peak'
 set format x '%g°'
