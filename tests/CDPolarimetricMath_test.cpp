@@ -437,6 +437,7 @@ TEST(CDPolarimetricMathIdentity, AnglesAtTheSeams) {
   EXPECT_EQ(CDStokesVector(5).getAoLP(), 0.0);
   EXPECT_EQ(CDStokesVector(1, 0, 0, 1).getAoLP(), 0.0) << "circular: undetermined, so 0";
   EXPECT_EQ(CDStokesVector(1, -0.0, 0, 1).getAoLP(), 0.0);
+  EXPECT_FALSE(std::signbit(CDStokesVector(1, 1, -0.0, 0).getAoLP())) << "would print as -0";
   EXPECT_EQ(CDStokesVector(1, -1, 0, 0).getAoLP(), pi / 2);
   EXPECT_EQ(CDStokesVector(1, -1, -0.0, 0).getAoLP(), pi / 2);
   EXPECT_EQ(CDStokesVector(1, 1, -1e-300, 0).getAoLP(), 0.0) << "just below pi rounds to 0";

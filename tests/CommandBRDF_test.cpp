@@ -422,7 +422,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {copper + "--theta-i 30 --sample 5 --seed x",
        "command line: --seed = x: is not a whole number from 0 to 4294967295; give e.g. 1000"},
       {plate + "--out ''",
-       "command line: --out: must name a file; malus --help shows what is understood"},
+       "command line: --out: must name a file; malus brdf --help shows what is understood"},
       {flags + "--param sigma=nan" + angles,
        "command line: --param sigma = nan: is not a finite number; write a number such as 0.2"},
       {flags + "--param sigma=0,2" + angles,
@@ -480,7 +480,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
        "command line: --geometries: excludes --theta-i, --theta-r and --phi; give a file or "
        "angles"},
       {plate + "--format xml",
-       "command line: --format: xml not in {text,csv,json}; malus --help shows what is "
+       "command line: --format: xml not in {text,csv,json}; malus brdf --help shows what is "
        "understood"},
   };
   const Scratch scratch;

@@ -97,6 +97,10 @@ TEST(CommandProductsIdentity, BadCubesAreOneLineAndLeaveNothing) {
   };
   EXPECT_NE(complaint("products none.img").find("none.img"), std::string::npos);
   EXPECT_NE(complaint("products x.img --band 4").find("from 1 to 3"), std::string::npos);
+  EXPECT_NE(complaint("products x.img --band -1").find("--band = -1: is not a band"),
+            std::string::npos);
+  EXPECT_NE(complaint("products x.img --band 0").find("from 1 to 3"), std::string::npos);
+  EXPECT_NE(complaint("products x.img --band 1 --all").find("beside --all"), std::string::npos);
   std::filesystem::resize_file(scratch / "x.img", 100);
   EXPECT_NE(complaint("info x.img").find("100 bytes"), std::string::npos);
   cubeIn(scratch.path);

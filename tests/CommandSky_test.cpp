@@ -279,6 +279,11 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
         "--wavelength-nm 500 --mu0 0.5 --dome 7",
         "--wavelength-nm 500 --mu0 0.5 --dome 5 --picture dome",
         "--tau 0.5 --mu0 0.5 --dome 5 --fluxes",
+        "--wavelength-nm 500 --mu0 0.5 --dome 5 --mu 0.4",
+        "--wavelength-nm 500 --mu0 0.5 --dome 5 --path",
+        "--tau 0.5 --mu0 0.5 --fluxes --phi 3",
+        "--tau 0.5 --pressure-hPa 1000 --mu0 0.5 --mu 0.5",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --phi 1e300",
         "--tau 0.5 --mu0 0 --fluxes",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --path",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol-tau 0.1",
@@ -297,6 +302,9 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "answers.csv"));
   EXPECT_NE(malusIn(scratch.path, "sky --points bad.csv").err.find("bad.csv:3"),
+            std::string::npos);
+  EXPECT_NE(malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --irradiance bright")
+                .err.find("is no irradiance; give pi, astm-e490 or a number"),
             std::string::npos);
   const std::string choices =
       malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --convention coulson").err;
