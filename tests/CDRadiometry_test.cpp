@@ -223,6 +223,32 @@ TEST(CDRadiometryInvariant, CompanyChangesNoBit) {
   }
 }
 
+// Surfaces at the end of a path ask together, unless something glows. At 300 K what glows sends no light to speak of at
+// 550 nm (1e-30 of the sky's), but all surfaces go the other way then. 1e-12: the order of sums.
+TEST(CDRadiometryInvariant, SurfacesThatAskTogetherAnswerAsEachByItself) {
+  const CDTransform wall = CDTransform::translate({1, 0.3, 0.6}).after(CDTransform::rotate({0.3, 1, 0}, -1.1));
+  const auto plate = copper(), other = copper(0.3);
+  const auto glow = std::make_shared<CDEmission>(BRDFDiffuse(CDSpectralVector<double>(one_band, 0.5), 0.0), 300);
+  const CDRadiometry::Ray ray = looking({0.3, 0.1, 0}, {-0.4, 0.1, 1}, {0, 1, 0});
+  for (const bool clear : {false, true}) {
+    CDWorld world = worldOf({{{}, plate}, {wall, other}}, 0.1);
+    setSun(world, {-0.5, 0.2, 1}, 1);
+    if (clear) world.sky = std::make_shared<CDRayleighSky>(*world.sun, CDRayleighSky::clearAir(one_band, 0.3));
+    for (const CDSampling sampling : {CDSampling::random, CDSampling::gridRotated, CDSampling::importance}) {
+      CDRadiometry::Truth together, alone;
+      world.materials[1].emission = nullptr;
+      const CDStokesVector a = seen(world, {.sampling = sampling, .rays = {30, 6}}, ray, &together);
+      world.materials[1].emission = glow;
+      const CDStokesVector b = seen(world, {.sampling = sampling, .rays = {30, 6}}, ray, &alone);
+      EXPECT_LT(apart(a, b), 1e-12 * a.getScalar());
+      EXPECT_EQ(together.rays, alone.rays);
+      EXPECT_GT(together.rays, 40u) << "there are second surfaces";
+      const CDStokesVector less = seen(world, {.sampling = sampling, .rays = {30, 4}}, ray);
+      EXPECT_GT(apart(a, less), 1e-6 * a.getScalar()) << "negative control: fewer rays";
+    }
+  }
+}
+
 // Ground and a wall, both endless, in a corner: each sees the other with half of its hemisphere, so that under a uniform
 // sky L_n = rho (L + L_{n-1}) / 2 after n reflections, times 1/cos(15 deg) for the three zeniths of the grid (see the chapter).
 // 1e-3: sixteen azimuths, however turned, are halved by a plane, but for the little that the wall's finite size leaves open.

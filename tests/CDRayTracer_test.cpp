@@ -49,7 +49,8 @@ double search(const CDSceneGeometry& g, const CDVector& o, const CDVector& d, bo
 }
 
 CDVector randomDirection(CDRandom& random) {
-  const double z = 2 * random.uniform() - 1, a = 2 * M_PI * random.uniform(), r = std::sqrt(1 - z * z);
+  const double z = 2 * random.uniform() - 1, a = 2 * M_PI * random.uniform(),
+               r = std::sqrt(1 - z * z);
   return {r * std::cos(a), r * std::sin(a), z};
 }
 }  // namespace
@@ -62,7 +63,8 @@ TEST(CDRayTracerIdentity, MeetsWhatASearchMeets) {
     CDRandom random(1);
     int apart = 0;
     for (int i = 0; i < 20000; ++i) {
-      const CDVector o = at + CDVector{8 * random.uniform() - 4, 8 * random.uniform() - 4, 1.2 + random.uniform()};
+      const CDVector o = at + CDVector{8 * random.uniform() - 4, 8 * random.uniform() - 4,
+                                       1.2 + random.uniform()};
       const CDVector d = randomDirection(random);
       const double expected = search(scene, o, d, true);
       const CDHit hit = tracer.intersect(o, d);
@@ -84,7 +86,8 @@ TEST(CDRayTracerIdentity, NegativeControlAScenesShiftIsSeen) {
   int apart = 0;
   for (int i = 0; i < 1000; ++i) {
     const CDVector o{4 * random.uniform() - 2, 4 * random.uniform() - 2, 2};
-    const double expected = search(moved, o, {0, 0, -1}, false), t = tracer.intersect(o, {0, 0, -1}).t;
+    const double expected = search(moved, o, {0, 0, -1}, false),
+                 t = tracer.intersect(o, {0, 0, -1}).t;
     apart += std::isfinite(expected) && std::abs(t - expected) > 1e-8;
   }
   EXPECT_GT(apart, 200);  // only the faces that look east or west see it
@@ -149,7 +152,8 @@ TEST(CDRayTracerInvariant, ManyBundlesAnswerAsSingleRaysDo) {
   for (int i = 0; i < 300; ++i) {
     std::vector<CDRayBundle> bundles(16);
     for (CDRayBundle& rays : bundles) {
-      rays.origin = {4 * random.uniform() - 2, 4 * random.uniform() - 2, 1.5 * random.uniform() + 0.01};
+      rays.origin = {4 * random.uniform() - 2, 4 * random.uniform() - 2,
+                     1.5 * random.uniform() + 0.01};
       rays.active = static_cast<std::uint32_t>(random() & random() & 0xffff);
       for (int k = 0; k < 16; ++k) {
         const CDVector d = randomDirection(random);
@@ -205,10 +209,12 @@ TEST(CDRayTracerInvariant, NothingLeaksAtCorners) {
   for (int i = 0; i < 20000; ++i) {
     const double t = random.uniform();
     const CDVector tip{-2, -2, 1}, foot{-3.5, -3.5, 0}, target = tip * t + foot * (1 - t);
-    const CDVector from{-4 + 4 * random.uniform(), -4 + 4 * random.uniform(), 4 + 5 * random.uniform()};
+    const CDVector from{-4 + 4 * random.uniform(), -4 + 4 * random.uniform(),
+                        4 + 5 * random.uniform()};
     const CDHit hit = tracer.intersect(from, normalized(target - from));
     ASSERT_TRUE(hit);
-    EXPECT_LT(hit.t, (target - from).getLength() * (1 + 1e-5) + 1e-5);  // not what lies behind the edge
+    EXPECT_LT(hit.t, (target - from).getLength() * (1 + 1e-5) +
+                         1e-5);  // not what lies behind the edge
   }
 }
 
@@ -218,7 +224,8 @@ TEST(CDRayTracerIdentity, GrazingRaysLeaveTheirFace) {
   const CDRayTracer tracer(scene);
   CDRandom random(5);
   for (int i = 0; i < 5000; ++i) {
-    const CDHit hit = tracer.intersect({-2 + 0.5 * random.uniform(), -2 + 0.2 * random.uniform(), 3}, {0, 0, -1});
+    const CDHit hit = tracer.intersect(
+        {-2 + 0.5 * random.uniform(), -2 + 0.2 * random.uniform(), 3}, {0, 0, -1});
     ASSERT_TRUE(hit);
     const CDVector along = normalized(cross(hit.normal, randomDirection(random)));
     const CDVector flat = normalized(along + hit.normal * (1e-3 * random.uniform()));
@@ -266,7 +273,8 @@ TEST(CDRayTracerIdentity, AStartOffTheSurfaceDoesNotMeetIt) {
   const CDRayTracer tracer(scene);
   CDRandom random(3);
   for (int i = 0; i < 5000; ++i) {
-    const CDHit hit = tracer.intersect({8 * random.uniform() - 4, 8 * random.uniform() - 4, 3}, {0, 0, -1});
+    const CDHit hit =
+        tracer.intersect({8 * random.uniform() - 4, 8 * random.uniform() - 4, 3}, {0, 0, -1});
     const CDVector start = tracer.leave(hit);
     EXPECT_FALSE(tracer.occluded(start, hit.normal));
   }
