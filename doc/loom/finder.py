@@ -11,6 +11,10 @@ other our out over own same see she should since some such than that the their t
 too under until upon used uses was way were what when where which while who whose why will with without would yet you""".split())
 SECTION = re.compile(r'<section id="([^"]*)"')
 HEADING = re.compile(r"<h[1-6][^>]*>(.*?)</h[1-6]>", re.DOTALL)
+UNREAD = re.compile(r'<pre>.*?</pre>|<math.*?</math>|<svg.*?</svg>|<p class="chunk-foot">.*?</p>|<a class="permalink".*?</a>'
+                    r'|<span class="ltx_tag[^>]*>.*?</span>', re.DOTALL)
+TAG = re.compile(r"<[^>]*>")
+WORD = re.compile(r"\w+")
 DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 
 
@@ -24,9 +28,7 @@ def base36(number):
 
 def text_of(html):
     """What is read aloud: no code of chunks, no formulas, no marks."""
-    html = re.sub(r'<pre>.*?</pre>|<math.*?</math>|<svg.*?</svg>|<p class="chunk-foot">.*?</p>|<a class="permalink".*?</a>'
-                  r'|<span class="ltx_tag[^>]*>.*?</span>', " ", html, flags=re.DOTALL)
-    return " ".join(unescape(re.sub(r"<[^>]*>", "", html)).split())
+    return " ".join(unescape(TAG.sub("", UNREAD.sub(" ", html))).split())
 
 
 def sections_of(page):
@@ -44,7 +46,7 @@ def index(pages, identifiers):
     sections, words = [], {}
     for number, page in enumerate(pages):
         for anchor, title, html in sections_of(page):
-            for word in set(re.findall(r"\w+", text_of(html).lower())):
+            for word in set(WORD.findall(text_of(html).lower())):
                 if len(word) > 2 and not word[0].isdigit() and word not in COMMON:
                     words.setdefault(word, []).append(len(sections))
             sections.append((number, anchor, title))

@@ -1,4 +1,6 @@
 """The chunks of a book as HTML and as LaTeX: coloured C++, links to what is used, and below each chunk where it leads."""
+import functools
+import os
 import re
 from html import escape
 
@@ -43,6 +45,7 @@ class Listing:
         self.names = names  # public names of the program's headers (names.py)
         self.chunks = [chunk for chapter in chapters for chunk in chapter.chunks]
         self.by_label = {chunk.label: chunk for chunk in self.chunks}
+        self.by_path = {os.path.normpath(chapter.path): chapter.chunks for chapter in chapters}
 
     def ordered(self, labels):
         return sorted(set(labels), key=lambda label: self.by_label[label].number)
@@ -56,19 +59,27 @@ class Listing:
         return f"{out} and {self.more(more, word)}" if more else out
 
     def code(self, chunk):
-        out = []
+        out, waiting = [], []  # plain text waits for its neighbours, since it comes in many small pieces
+
+        def put(text):
+            if waiting:
+                out.append(self.plain("".join(waiting)))
+                waiting.clear()
+            out.append(text)
+
         for match in TOKEN.finditer(chunk.text):
             kind, text = match.lastgroup, match[0]
             if kind == "use":
-                out.append(self.use(chunk, *chunk.used_chunks[int(text[1:-1])]))
+                put(self.use(chunk, *chunk.used_chunks[int(text[1:-1])]))
             elif kind == "word" and text in chunk.links:
-                out.append(self.identifier(text, chunk.links[text]))
+                put(self.identifier(text, chunk.links[text]))
             elif kind == "word" and text in KEYWORDS:
-                out.append(self.colour("keyword", text))
+                put(self.colour("keyword", text))
             elif kind in ("word", "other"):
-                out.append(self.plain(text))
+                waiting.append(text)
             else:
-                out.append(self.colour(kind, text))
+                put(self.colour(kind, text))
+        put("")
         return "".join(out)
 
     def foot(self, chunk):
@@ -92,6 +103,7 @@ class Listing:
         firsts = [chunk for chunk in self.chunks if chunk.pieces[0] is chunk]
         return sorted(firsts, key=lambda chunk: noweb.plain(chunk.name).lower())
 
+    @functools.cached_property
     def identifiers(self):
         """(identifier, what it is, labels of the chunks that define it, labels of the others that use it), by name."""
         defined, used, about = {}, {}, {}
@@ -112,8 +124,8 @@ class Listing:
 
     def chunk_at(self, name):
         """The chunk that declares a public name."""
-        for chunk in self.chunks:
-            if chunk.chapter.path.endswith(name.path) and 0 <= name.line - chunk.line <= chunk.text.count("\n"):
+        for chunk in self.by_path.get(os.path.normpath(name.path), ()):
+            if 0 <= name.line - chunk.line <= chunk.text.count("\n"):
                 return chunk
         return None
 
@@ -132,7 +144,7 @@ def comment_on(word, lines):
     """The first sentence of the /// comment above or beside the declaration of a word; nothing if there is none."""
     whole = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)")
     for place, line in enumerate(lines):
-        if whole.search(line.split("//")[0]):
+        if word in line and whole.search(line.split("//")[0]):
             if comment := comment_at(place, lines):
                 return comment
     return ""
@@ -200,7 +212,7 @@ class HtmlListing(Listing):
     def identifier_index(self):
         rows = [f'<tr id="{anchor_of(word)}"><td><code>{escape(word)}</code></td>'
                 f"<td>{escape(about)}</td><td>{self.numbers(defined)}</td><td>{self.numbers(used)}</td></tr>"
-                for word, about, defined, used in self.identifiers()]
+                for word, about, defined, used in self.identifiers]
         return table(("Identifier", "what it is", "defined in", "used in"), rows)
 
 
@@ -257,7 +269,7 @@ class TexListing(Listing):
     def identifier_index(self):
         return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{{self.prose(about)}}}"
                          rf"{{{self.pages(defined)}}}{{{self.numbers(used)}}}"
-                         for word, about, defined, used in self.identifiers())
+                         for word, about, defined, used in self.identifiers)
 
     def pages(self, labels):
         return ", ".join(rf"{self.number(label)}~\litpage{{{label}}}" for label in self.ordered(labels))

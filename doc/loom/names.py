@@ -71,7 +71,9 @@ def public(folder):
         if "scopeKind" not in tag or not is_public(tag):
             continue
         header = tag["path"]
-        origin = origins.setdefault(header, places(header))[tag["line"] - 1]
+        if header not in origins:
+            origins[header] = places(header)
+        origin = origins[header][tag["line"] - 1]
         scope = re.sub(rf"^{NAMESPACE}(::)?", "", tag["scope"])
         word = re.sub(r"^operator (?=\W)", "operator", tag["name"])
         names.append(Name(f"{scope}::{word}" if scope else word, word, tag["kind"], *origin))

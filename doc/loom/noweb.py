@@ -77,10 +77,11 @@ class Reader:
         self.users = []
 
     def read(self, lines):
+        methods = {"@" + name[3:]: getattr(self, name) for name in dir(self) if name.startswith("on_")}
         for line in lines:
             key, _, rest = line.partition(" ")
-            if method := getattr(self, "on_" + key[1:], None):
-                method(rest)
+            if key in methods:
+                methods[key](rest)
         return self.chapters
 
     def write(self, latex):

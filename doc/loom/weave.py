@@ -15,8 +15,10 @@ converts their prose, references.py reads the bibliography, and this program
 joins them: it checks what the prose refers to, lays out the pages, and copies
 the figures.
 """
+import filecmp
 import os
 import re
+import shutil
 import string
 from html import escape, unescape
 
@@ -316,8 +318,11 @@ class HtmlBook(book.Book):
                 new.write(content)
 
         def copy(name, path):
-            with open(path, "rb") as file:
-                put(name, file.read())
+            wanted.add(name)
+            there = os.path.join(out, name)
+            os.makedirs(os.path.dirname(there), exist_ok=True)
+            if not os.path.exists(there) or not filecmp.cmp(path, there):  # looks into files only if their times differ
+                shutil.copy2(path, there)
 
         pages = self.reading_order()
         for i, page in enumerate(pages):
@@ -326,7 +331,7 @@ class HtmlBook(book.Book):
         search = self.search_page()
         put(search.file, self.layout(search, None, None).encode())
         put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES],
-                                            self.listings.identifiers()).encode())
+                                            self.listings.identifiers).encode())
         copy("search.js", os.path.join(self.options.book, "search.js"))
         copy("book.css", os.path.join(self.options.book, "book.css"))
         for font in FONTS:
