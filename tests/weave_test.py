@@ -147,6 +147,23 @@ class WovenBook(Workshop):
         glued = weave.Finisher.GLUED.sub(weave.Finisher.glue, '(<math display="inline">x</math>), <math display="inline">y</math> z')
         self.assertEqual(glued, '<span class="glued">(<math display="inline">x</math>),</span> <math display="inline">y</math> z')
 
+    def test_a_formula_that_stands_in_many_places_takes_nothing_from_one_to_the_other(self):
+        formula = r"\begin{equation} ((a+b)(c+d))^{2} = |e_{i}|^{2} \label{eq:%s} \end{equation} $((a+b)(c+d))^{2}$ "
+        self.put("nw/light/first.nw", FIRST + "\\section{More}\n" + formula % "one" + formula % "two" + r"\eqref{eq:one} \eqref{eq:three}")
+        self.put("nw/matter/second.nw", SECOND + "\\section{More}\n" + formula % "three" + r"\eqref{eq:two}")
+        self.assertEqual(self.weave(), (0, ""))
+        self.assertEqual(self.check_links(), (0, ""))
+        pages = [self.get("light-first.html"), self.get("matter-second.html")]
+        for display in ("block", "inline"):
+            found = [re.findall(rf'<math[^>]*alttext="[^"]*a\+b[^"]*" display="{display}">.*?</math>', page, re.DOTALL) for page in pages]
+            self.assertEqual([len(formulas) for formulas in found], [2, 1])
+            self.assertEqual(len(set(found[0] + found[1])), 1)
+            self.assertNotIn(" id=", found[0][0])
+        for page, labels in zip(pages, (("one", "two"), ("three",))):
+            self.assertEqual(re.findall(r'id="eq:(one|two|three)"', page), list(labels))
+        self.assertRegex(pages[0], r'\(<a href="#eq:one"[^>]*>1.1</a>\) \(<a href="matter-second.html#eq:three"[^>]*>2.1</a>\)')
+        self.assertRegex(pages[1], r'\(<a href="light-first.html#eq:two"[^>]*>1.2</a>\)')
+
     def test_chunks_are_numbered_in_the_order_of_the_book_and_joined_both_ways(self):
         self.assertRegex(self.first, r'(?s)id="chunk-reflect-a-ray">.*?href="#chunk-reflect-a-ray">1</a>')
         self.assertRegex(self.first, r'class="use" href="#chunk-square-n">⟨Square <code>n</code> <span class="chunk-number">2<')
@@ -305,6 +322,40 @@ class PrintedBook(Workshop):
 
     def test_latex_error_is_told_with_the_line_of_the_chapter(self):
         self.fails(r"\section{The code}", r"\section{The code} \sectoin", "nw/light/first.nw:6:", "Undefined control sequence")
+
+
+class Formulas(unittest.TestCase):
+    """formulas.pl must make of every formula what LaTeXML's own parser makes of it, which is slow."""
+
+    TEX = latexml.BEGIN + r"""\chapter{Formulas}
+$x$, $-\frac{1}{2}$, $a_{i}^{2}+b'$, $((a+b)(c-(d+e)))^{2}f$, $f(x,y)=\sin(x)\cos y$, $|r_s|^2+\|v\|$, $\bigl|a|b|c\bigr|$,
+$\Bigl[\;\cdot\;\Bigr]_{5.8}$, $\sum_{i=1}^{n} a_i \int_0^1 f(x)\,dx$, $a=b\le c, d\ne e,\qquad g$, $\langle a,b\rangle$, $\{x\,|\,x>0\}$,
+$\left.\frac{df}{dx}\right|_{x=0}$, ${}^{14}C$, $\max_{x} f\,/\,\log 2$, $\begin{pmatrix} 1 & x \\ (y) & [z] \end{pmatrix}$, $[0,1)$,
+$\begin{cases} a & b>0 \\ (c) & \text{else} \end{cases}$, $+$, $=$, $x=$, $(+)$, $x\to 0^{+}$, $\mathbf{M}\cdot\vec{S}$, $n!$, $a\,(b$,
+$(((a)))$, $x^{)}_{=}$, $a:b$.
+\begin{align} S_0 &= |E_x|^2 + |E_y|^2, & S_1 &= (I_0 - I_{90}) \\ &= 2(S_0). \end{align}
+\end{document}
+"""
+
+    def convert(self, before=""):
+        """(XML, what the parser could not parse)"""
+        with tempfile.TemporaryDirectory() as folder:
+            source, made, log = (os.path.join(folder, "formulas." + ending) for ending in ("tex", "xml", "log"))
+            with open(source, "w", encoding="utf-8") as file:
+                file.write(self.TEX)
+            subprocess.run(["perl", "-e", f'use FindBin; require "$FindBin::Bin/formulas.pl"; {before} do "./latexml.pl"; die $@ if $@',
+                            "xml", os.path.join(ROOT, "doc", "book"), "1"], cwd=LOOM, input=f"{source}\t{made}\t{log}\n",
+                           text=True, check=True, timeout=60)
+            with open(made, encoding="utf-8") as xml, open(log, encoding="utf-8") as said:
+                return xml.read(), re.findall(r"^Warning:not_parsed.*", said.read(), re.MULTILINE)
+
+    def test_same_trees_and_same_complaints_as_the_slow_parser(self):
+        fast, slow = self.convert(), self.convert("no warnings; *Formula::take_over = sub { };")
+        self.assertEqual(fast, slow)
+        self.assertGreater(len(slow[1]), 0)
+
+    def test_negative_control(self):
+        self.assertNotEqual(self.convert(), self.convert("no warnings; *Formula::copy_of = sub { return undef; };"))
 
 
 class Errata(unittest.TestCase):

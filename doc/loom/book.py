@@ -32,7 +32,9 @@ class Page:
         self.file = name + ".html"
         self.title = self.body = ""
         self.sections = []  # (anchor, title)
+        self.chunks = []
         self.root = None    # LaTeXML's XML
+        self.tex = self.addresses = ""  # what that was made of, and what its references lead to
 
 
 def line_of(text, place):
@@ -176,6 +178,7 @@ class Book:
             number += numbered
             in_front, in_back = folder not in self.about, folder == "back"
             page = Page(name if in_front else f"{folder}-{name}", chapter.path, latex, number if numbered else 0)
+            page.chunks = chapter.chunks
             if in_back:
                 self.back.append(page)
             elif in_front:

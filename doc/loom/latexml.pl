@@ -18,12 +18,12 @@ use LaTeXML::Common::XML;
 use LaTeXML::Core;
 use LaTeXML::Core::Token;
 use LaTeXML::Global;
-use LaTeXML::MathParser;
 use LaTeXML::Post;
 use LaTeXML::Post::MathML::Presentation;
 use LaTeXML::Post::XSLT;
 use LaTeXML::Util::Pathname;
 use version;
+require "$FindBin::Bin/formulas.pl";
 
 # ---------------------------------------------------------------- words instead of letters
 # LaTeXML makes a box of every letter, and asks for every box which font it has and where it belongs. A line of prose
@@ -83,7 +83,8 @@ sub is_text {
   my ($box) = @_;
   return ref $box eq 'LaTeXML::Core::Box' && defined $$box{string} && keys %{ $$box{properties} } == 2; }
 
-# Both know LaTeXML from inside, and so they are used with the version that they know; any other is only slower.
+# This knows LaTeXML from inside, as formulas.pl does, and so it is used with the version that it knows; any other is
+# only slower.
 sub by_the_line {
   no warnings qw(redefine once);
   my $digest = \&LaTeXML::Core::Stomach::invokeToken_simple;
@@ -103,27 +104,12 @@ sub by_the_line {
     return $absorb->($self, $object, %properties); };
   my ($name, %names) = (\&LaTeXML::Common::Model::getNodeQName);
   *LaTeXML::Common::Model::getNodeQName = sub {
-    my ($self, $node) = @_;
-    return $name->(@_) unless $node && $node->nodeType == XML_ELEMENT_NODE;
-    return $names{ $node->namespaceURI // '' }{ $node->localname } //= $name->(@_); };
+    my $node = $_[1];
+    return &$name unless defined $node && $node->nodeType == XML_ELEMENT_NODE;
+    return $names{ $node->nodeName } //= &$name; };
   return; }
 
 by_the_line() if $LaTeXML::VERSION == version->declare('0.8.7');
-
-# ---------------------------------------------------------------- the grammar of formulas
-# At every factor the parser tries seven kinds of scripted symbols, each with all its alternatives, before it turns to
-# plain ones. The first word of what is left tells at once which of them can succeed.
-my %FIRST = (bigop => 'BIGOP|SUMOP|INTOP|LIMITOP|DIFFOP', ATOM_OR_ID => 'ATOM|ID|ARRAY');
-
-sub look_ahead {
-  no warnings qw(redefine once);
-  my $scripted = \&Parse::RecDescent::LaTeXML::MathGrammar::preScripted;
-  *Parse::RecDescent::LaTeXML::MathGrammar::preScripted = sub {
-    my ($kind) = @{ $_[4]->() };
-    my $first = $FIRST{$kind} // $kind;
-    return undef unless $_[1] =~ /\A\s*(?:FLOATSUPERSCRIPT|FLOATSUBSCRIPT|$first):/;  ## no critic: a list would be wrong
-    goto &$scripted; };
-  return; }
 
 # ---------------------------------------------------------------- first step: LaTeX to XML
 sub loaded_core {
@@ -132,8 +118,7 @@ sub loaded_core {
   $core->withState(sub {
       $core->initializeState('TeX.pool', 'LaTeX.pool', 'book.cls', 'malus.sty');
       $_[0]->getModel->loadSchema; });
-  LaTeXML::MathParser->new();    # compiles the grammar of formulas
-  look_ahead() if $LaTeXML::VERSION == version->declare('0.8.7');
+  Formula::take_over() if $LaTeXML::VERSION == version->declare('0.8.7');
   return $core; }
 
 sub to_xml {

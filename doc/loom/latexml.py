@@ -15,7 +15,8 @@ import xml.etree.ElementTree as ET
 
 from problems import Problem, stop_if_any
 
-DRIVER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "latexml.pl")
+LOOM = os.path.dirname(os.path.abspath(__file__))
+DRIVER, FORMULAS = os.path.join(LOOM, "latexml.pl"), os.path.join(LOOM, "formulas.pl")
 
 NAMESPACE = "http://dlmf.nist.gov/LaTeXML"
 ET.register_namespace("", NAMESPACE)
@@ -49,10 +50,13 @@ def write(path, text):
 
 
 class Job:
-    """One file for LaTeXML: which page it is of, the text it is made from, and where things lie."""
+    """One file for LaTeXML: which page it is of, all that the result depends on, and where things lie.
 
-    def __init__(self, page, text, path, before, after):
-        self.page, self.text = page, text
+    The text it is made from is asked for only when it has to be made.
+    """
+
+    def __init__(self, page, depends, text, path, before, after):
+        self.page, self.depends, self.text = page, depends, text
         self.source, self.destination, self.log = path + before, path + after, path + after + ".log"
         self.key = path + after + ".key"
 
@@ -87,53 +91,64 @@ class Converter:
         os.makedirs(work, exist_ok=True)
         self.work, self.theme = work, theme
         self.context = version("latexml")
-        for path in (os.path.join(theme, "malus.sty.ltxml"), DRIVER):
+        for path in (os.path.join(theme, "malus.sty.ltxml"), DRIVER, FORMULAS):
             with open(path, encoding="utf-8") as file:
                 self.context += file.read()
 
     def run(self, step, jobs):
-        """Those of the jobs that are not made yet; the longest first, so that none is waited for at the end."""
-        digests = {job: hashlib.sha256((job.text + self.context).encode()).hexdigest() for job in jobs}
+        """Yields each job when it is made: at once those that need no more be made, while LaTeXML works on the others.
+
+        Those begin with the longest, so that none is waited for at the end.
+        """
+        digests = {job: hashlib.sha256((job.depends + self.context).encode()).hexdigest() for job in jobs}
         wanted = [job for job in jobs if not job.is_made(digests[job])]
-        if not wanted:
-            return
         for job in wanted:
-            write(job.source, job.text)
+            write(job.source, job.text())
             for old in (job.destination, job.log, job.key):
                 if os.path.exists(old):
                     os.remove(old)
-        lines = "".join(f"{job.source}\t{job.destination}\t{job.log}\n"
-                        for job in sorted(wanted, key=lambda job: -len(job.text)))
-        done = subprocess.run(["perl", DRIVER, step, self.theme, str(os.cpu_count())], input=lines, capture_output=True,
-                              text=True)
+        worker = self.start(step, sorted(wanted, key=lambda job: -len(job.depends))) if wanted else None
+        try:
+            yield from (job for job in jobs if job not in wanted)
+            said = worker.communicate()[1] if worker else ""
+        finally:
+            if worker and worker.poll() is None:
+                worker.kill()
         problems = []
         for job in wanted:
-            if found := job.problems(done.stderr):
+            if found := job.problems(said):
                 problems += found
             else:
                 write(job.key, digests[job])
         stop_if_any(problems)
+        yield from wanted
+
+    def start(self, step, jobs):
+        """LaTeXML at work."""
+        command = ["perl", DRIVER, step, self.theme, str(os.cpu_count())]
+        worker = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        worker.stdin.write("".join(f"{job.source}\t{job.destination}\t{job.log}\n" for job in jobs))
+        worker.stdin.close()
+        worker.stdin = None  # nothing more to say: for communicate()
+        return worker
 
     def to_xml(self, pages):
-        """First step: LaTeX of the pages to the roots of their XML."""
+        """First step, LaTeX to XML: yields each page when it has its root."""
         jobs = []
         for page in pages:  # page.chapter is its number, 0 for none
-            text = f"{BEGIN}\\setcounter{{chapter}}{{{max(page.chapter - 1, 0)}}}{page.latex}\n\\end{{document}}\n"
-            jobs.append(Job(page, text, os.path.join(self.work, page.name), ".tex", ".xml"))
-        self.run("xml", jobs)
-        for job in jobs:
+            page.tex = f"{BEGIN}\\setcounter{{chapter}}{{{max(page.chapter - 1, 0)}}}{page.latex}\n\\end{{document}}\n"
+            jobs.append(Job(page, page.tex, lambda page=page: page.tex, os.path.join(self.work, page.name), ".tex", ".xml"))
+        for job in self.run("xml", jobs):
             job.page.root = ET.parse(job.destination).getroot()
+            yield job.page
 
     def to_html(self, pages):
-        """Second step: XML of the pages to the HTML of their bodies."""
-        jobs = [Job(page, ET.tostring(page.root, encoding="unicode"), os.path.join(self.work, page.name), ".ref.xml", ".html")
-                for page in pages]
-        self.run("html", jobs)
-        bodies = []
-        for job in jobs:
+        """Second step, XML to HTML: yields each page with its body."""
+        jobs = [Job(page, page.tex + page.addresses, lambda page=page: ET.tostring(page.root, encoding="unicode"),
+                    os.path.join(self.work, page.name), ".ref.xml", ".html") for page in pages]
+        for job in self.run("html", jobs):
             with open(job.destination, encoding="utf-8") as file:
-                bodies.append(re.search(r'<article class="ltx_document">\n?(.*)</article>', file.read(), re.DOTALL)[1])
-        return bodies
+                yield job.page, re.search(r'<article class="ltx_document">\n?(.*)</article>', file.read(), re.DOTALL)[1]
 
 
 def number_of(element):
@@ -191,10 +206,16 @@ def link(element, href, text, title):
 
 
 def resolve(root, address, citation):
-    """Replaces references by links. address(label) and citation(key) give (href, text, title)."""
+    """Replaces references by links. address(label) and citation(key) give (href, text, title); returns all of them."""
+    used = []
+
+    def link_to(element, target):
+        used.append("\t".join(target))
+        link(element, *target)
+
     for element in list(root.iter(ours("ref"))):
         if name := element.get("labelref"):
-            link(element, *address(name.removeprefix("LABEL:")))
+            link_to(element, address(name.removeprefix("LABEL:")))
     for parent in list(root.iter()):
         for bibref in parent.findall(ours("bibref")):
             place, tail = list(parent).index(bibref), bibref.tail
@@ -202,6 +223,7 @@ def resolve(root, address, citation):
             keys = bibref.get("bibrefs").split(",")
             for i, key in enumerate(keys):
                 cited = ET.Element(ours("ref"))
-                link(cited, *citation(key))
+                link_to(cited, citation(key))
                 cited.tail = ", " if i + 1 < len(keys) else tail
                 parent.insert(place + i, cited)
+    return "\n".join(used)

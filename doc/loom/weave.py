@@ -56,12 +56,16 @@ class Finisher:
     KINDS = {"as derived": " cards errata", "left open": " cards left-open", "ltx_eqn": " formula"}  # what a table's head says
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
 
-    def __init__(self, links, chapters, listings):
+    def __init__(self, links, listings):
         self.links, self.listings = links, listings
-        self.chunks = {chunk.label: chunk for chapter in chapters for chunk in chapter.chunks}
+        self.rendered = {}  # label -> the chunk as HTML
+
+    def render_chunks(self, page):
+        for chunk in page.chunks:
+            self.rendered[chunk.label] = self.listings.chunk(chunk, self.links.anchors[chunk.label][1])
 
     def finish(self, page, html):
-        fill = lambda match: self.listings.chunk(self.chunks[match[1]], self.links.anchors[match[1]][1])
+        fill = lambda match: self.rendered[match[1]]
         html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
         html = html.replace(' title=""', "").replace("\n\n", "\n")
         # paper's sizes: the style sheet says how small a table is and the browser how wide its columns are; a formula
@@ -186,15 +190,14 @@ class HtmlBook(book.Book):
             self.substitute(page)
         converter = latexml.Converter(self.options.work, self.options.book)
 
-        converter.to_xml(pages)
-        for page in pages:
+        finisher = Finisher(self.links, self.listings)
+        for page in converter.to_xml(pages):
             for label, (anchor, number, _) in latexml.give_addresses(page.root).items():
                 self.links.labels[label] = (page, anchor, number)
+            finisher.render_chunks(page)  # there is time for it while LaTeXML works
         for page in pages:
-            latexml.resolve(page.root, self.to_label(page), self.to_entry)
-        bodies = converter.to_html(pages)
-        finisher = Finisher(self.links, self.chapters, self.listings)
-        for page, body in zip(pages, bodies):
+            page.addresses = latexml.resolve(page.root, self.to_label(page), self.to_entry)
+        for page, body in converter.to_html(pages):
             finisher.finish(page, body)
         self.number_entries(self.back[-1])
         for part in self.parts:
