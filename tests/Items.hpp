@@ -14,7 +14,8 @@
 /// The item after its function ran, on the committed printed values unless `data` says otherwise.
 inline malus::CDItem ran(const std::string& id, malus::CDItemFunction function,
                          const std::filesystem::path& data = "validation") {
-  malus::CDItem item(id, std::filesystem::temp_directory_path(), data);
+  const Scratch scratch;  // an item may write files of its own
+  malus::CDItem item(id, scratch.path, data);
   function(item);
   return item;
 }
