@@ -55,7 +55,7 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"reprodce",
        "command line: command = reprodce: is not a command of malus; did you mean reproduce? "
        "known are: "
-       "reproduce, brdf, fit, sun, sky, render, merge, products, info, schema, table\n"},
+       "reproduce, brdf, fit, sun, sky, mie, render, merge, products, info, schema, table\n"},
       {"reproduce F3.99",
        "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce "
        "--list shows all\n"},

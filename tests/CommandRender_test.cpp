@@ -362,7 +362,7 @@ TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
   const Workplace place(smallScene());
   for (const char* flags :
        {"--tile 0,0,41,10", "--tile 5,5,5,9", "--tile 1,2,3", "--frames 1:2", "--frames x",
-        "--seed -1", "--threads -2", "--out /proc/nowhere", "--tile 0,0,16,16,", "--tile ''",
+        "--seed -1", "--threads -2", "--out /proc/nowhere", "--tile 0,0,16,16,", "--tile 0,0,16,", "--tile ''",
         "--frames 0:", "--frames ''", "--seed 99999999999999999999", "--seed ''", "--out ''",
         "--threads 1000000"}) {
     const Outcome outcome = place.render(flags);
