@@ -3,6 +3,10 @@ width = 860; height = 400
 load style
 stats 'f00.csv' using 1 skip 1 nooutput
 curves = STATS_columns
+# names of columns are plain letters
+swapped(s, a, b) = (p = strstrt(s, a)) > 0 ? s[1:p - 1] . b . s[p + strlen(a):strlen(s)] : s
+name(s) = swapped(swapped(s, 'sigma', 'σ ='), ' um', ' µm')
+
 polarises = 0
 do for [i=2:curves] {
   stats 'dolp.csv' using i nooutput
@@ -37,5 +41,5 @@ set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0
 unset title; unset xlabel; unset border; unset tics; unset grid
 set yrange [0:1]
 set key center center horizontal Left reverse samplen 2.5 width -0.5 font ',12'
-plot for [i=2:curves] 'f00.csv' using (0):(column(i) > 0 ? NaN : NaN) with lines linetype i-1 title columnheader(i)
+plot for [i=2:curves] 'f00.csv' using (0):(column(i) > 0 ? NaN : NaN) with lines linetype i-1 title name(columnheader(i))
 unset multiplot
