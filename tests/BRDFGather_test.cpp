@@ -13,12 +13,16 @@ using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-constexpr CDTorranceSparrowOptions with(CDShadowing shadowing, CDDiffuseTerm diffuse, bool polarized = true) {
+constexpr CDTorranceSparrowOptions with(CDShadowing shadowing, CDDiffuseTerm diffuse,
+                                        bool polarized = true) {
   return {shadowing, diffuse, polarized};
 }
-constexpr CDTorranceSparrowOptions specular_only = with(CDShadowing::vGroove, CDDiffuseTerm::none);
-constexpr CDTorranceSparrowOptions as_thesis = with(CDShadowing::vGroove, CDDiffuseTerm::thesis);
-constexpr CDTorranceSparrowOptions reciprocal = with(CDShadowing::vGroove, CDDiffuseTerm::reciprocal);
+constexpr CDTorranceSparrowOptions specular_only =
+    with(CDShadowing::vGroove, CDDiffuseTerm::none);
+constexpr CDTorranceSparrowOptions as_thesis =
+    with(CDShadowing::vGroove, CDDiffuseTerm::thesis);
+constexpr CDTorranceSparrowOptions reciprocal =
+    with(CDShadowing::vGroove, CDDiffuseTerm::reciprocal);
 }  // namespace
 
 // ---- many directions at once, in single precision, against the plain sum in double precision
@@ -28,12 +32,15 @@ struct Directions {
   explicit Directions(std::size_t count, std::uint64_t seed = 1) {
     CDRandom random(seed);
     for (std::size_t i = 0; i < count; ++i) {
-      const CDVector d = CDVector::fromAngles(0.5 * pi * random.uniform(), 2 * pi * random.uniform());
+      const CDVector d =
+          CDVector::fromAngles(0.5 * pi * random.uniform(), 2 * pi * random.uniform());
       x.push_back(float(d.x)), y.push_back(float(d.y)), z.push_back(float(d.z));
       weight.push_back(float(d.z * 2 * pi / double(count)));
     }
   }
-  CDLightDirections view() const { return {x.size(), x.data(), y.data(), z.data(), weight.data()}; }
+  CDLightDirections view() const {
+    return {x.size(), x.data(), y.data(), z.data(), weight.data()};
+  }
 };
 
 /// Copper and glass, smooth and rough, in runs of equal roughness.
@@ -42,26 +49,30 @@ BRDFTorranceSparrow mixture(std::size_t bands, const CDTorranceSparrowOptions& o
   for (std::size_t j = 0; j < bands; ++j) {
     nm.push_back(400 + double(j));
     const bool glass = j % 5 == 4;
-    n.push_back(glass ? 1.5 : 0.4 + 0.01 * double(j)), k.push_back(glass ? 0 : 2.9 + 0.01 * double(j));
+    n.push_back(glass ? 1.5 : 0.4 + 0.01 * double(j)),
+        k.push_back(glass ? 0 : 2.9 + 0.01 * double(j));
     sigma.push_back(j < bands / 2 ? 0.1 : 0.3);
   }
   const auto grid = CDSpectralGrid::make(nm);
-  return {CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k), CDSpectralVector<double>(grid, sigma),
-          options};
+  return {CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k),
+          CDSpectralVector<double>(grid, sigma), options};
 }
 
 CDSpectralVector<CDStokesVector> whiteLight(const CDSpectralGridPtr& grid) {
   CDSpectralVector<CDStokesVector> light(grid);
-  for (std::size_t j = 0; j < light.size(); ++j) light[j] = CDStokesVector(1 + 0.01 * double(j));
+  for (std::size_t j = 0; j < light.size(); ++j)
+    light[j] = CDStokesVector(1 + 0.01 * double(j));
   return light;
 }
 
 /// Largest difference of any component, in units of S0.
-double apart(const CDSpectralVector<CDStokesVector>& a, const CDSpectralVector<CDStokesVector>& b) {
+double apart(const CDSpectralVector<CDStokesVector>& a,
+             const CDSpectralVector<CDStokesVector>& b) {
   double largest = 0;
   for (std::size_t j = 0; j < a.size(); ++j)
     for (int c = 0; c < 4; ++c) {
-      const double difference = std::abs(CDStokesVector(a.at(j)).getStokes(c) - CDStokesVector(b.at(j)).getStokes(c));
+      const double difference =
+          std::abs(CDStokesVector(a.at(j)).getStokes(c) - CDStokesVector(b.at(j)).getStokes(c));
       if (!(difference <= largest * CDStokesVector(b.at(j)).getScalar()))
         largest = difference / CDStokesVector(b.at(j)).getScalar();
     }
@@ -71,8 +82,9 @@ double apart(const CDSpectralVector<CDStokesVector>& a, const CDSpectralVector<C
 
 // 3e-6: single precision's 6e-8 through an exponent of up to some tens.
 TEST(GatherIdentity, GatherIsTheSumOfScatter) {
-  for (const auto& options : {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
-                              with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+  for (const auto& options :
+       {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
+        with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
     for (const std::size_t bands : {1u, 2u, 11u, 300u})
       for (const std::size_t count : {90u, 128u, 333u}) {
         const BRDFTorranceSparrow model = mixture(bands, options);
@@ -83,7 +95,8 @@ TEST(GatherIdentity, GatherIsTheSumOfScatter) {
           const CDVector viewer = CDVector::fromAngles(zenith, 2);
           model.gather(viewer, from.view(), light, fast);
           model.CDBRDFModel::gather(viewer, from.view(), light, plain);
-          EXPECT_LT(apart(fast, plain), 3e-6) << bands << " bands " << count << " directions at " << zenith;
+          EXPECT_LT(apart(fast, plain), 3e-6)
+              << bands << " bands " << count << " directions at " << zenith;
         }
       }
 }
@@ -95,8 +108,10 @@ TEST(GatherIdentity, GatherAtSingularDirections) {
   for (const double zenith : {0.0, 1e-4, 0.5, 1.5}) {
     const CDVector v = CDVector::fromAngles(zenith, 1);
     Directions from(0);
-    for (const CDVector& d : {v, CDVector{-v.x, -v.y, v.z}, CDVector{0, 0, 1}, CDVector{1, 0, 0}, CDVector{0, 0.6, -0.8}})
-      from.x.push_back(float(d.x)), from.y.push_back(float(d.y)), from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
+    for (const CDVector& d : {v, CDVector{-v.x, -v.y, v.z}, CDVector{0, 0, 1},
+                              CDVector{1, 0, 0}, CDVector{0, 0.6, -0.8}})
+      from.x.push_back(float(d.x)), from.y.push_back(float(d.y)), from.z.push_back(float(d.z)),
+          from.weight.push_back(0.1f);
     CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
     model.gather(v, from.view(), light, fast);
     model.CDBRDFModel::gather(v, from.view(), light, plain);
@@ -125,7 +140,8 @@ TEST(GatherIdentity, GatherRefusesPolarisedLight) {
 // Sums in another order: rounding only.
 TEST(GatherIdentity, OfLambertsSurface) {
   const auto grid = CDSpectralGrid::make({450.0, 550.0, 650.0});
-  const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}), 0.5);
+  const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}),
+                          0.5);
   const Directions from(90);
   CDSpectralVector<CDStokesVector> fast(grid), plain(grid);
   model.gather({0, 0, 1}, from.view(), whiteLight(grid), fast);
@@ -143,15 +159,17 @@ std::vector<float> unlikeLight(std::size_t directions, std::size_t bands, std::u
   for (std::size_t i = 0; i < directions; ++i)
     for (int component = 0; component < 4; ++component)
       for (std::size_t band = 0; band < bands; ++band)
-        light.push_back(float(component == 0 ? 1 + random.uniform() : 0.5 * (2 * random.uniform() - 1)));
+        light.push_back(
+            float(component == 0 ? 1 + random.uniform() : 0.5 * (2 * random.uniform() - 1)));
   return light;
 }
 }  // namespace
 
 // 5e-6: as above, and the two rotations, whose cosines and sines have single precision's digits.
 TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
-  for (const auto& options : {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
-                              with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+  for (const auto& options :
+       {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
+        with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
     for (const std::size_t bands : {1u, 2u, 11u, 300u})
       for (const std::size_t count : {16u, 90u, 144u}) {
         const BRDFTorranceSparrow model = mixture(bands, options);
@@ -162,7 +180,8 @@ TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
           const CDVector viewer = CDVector::fromAngles(zenith, 2);
           model.gatherEach(viewer, from.view(), light.data(), fast);
           model.CDBRDFModel::gatherEach(viewer, from.view(), light.data(), plain);
-          EXPECT_LT(apart(fast, plain), 5e-6) << bands << " bands " << count << " directions at " << zenith;
+          EXPECT_LT(apart(fast, plain), 5e-6)
+              << bands << " bands " << count << " directions at " << zenith;
         }
       }
 }
@@ -174,16 +193,19 @@ TEST(GatherIdentity, GatherEachAtSingularDirections) {
   for (const double zenith : {0.0, 1e-6, 1e-4, 0.01, 0.5, 1.2, 1.5}) {
     const CDVector v = CDVector::fromAngles(zenith, 1);
     for (const double off : {0.0, 1e-6, 1e-4, 1e-2})
-      for (const CDVector& d : {CDVector::fromAngles(zenith + off, 1 + off), CDVector{-v.x, -v.y, v.z}, CDVector{0, 0, 1},
-                                CDVector::fromAngles(1.57, 4)}) {
+      for (const CDVector& d :
+           {CDVector::fromAngles(zenith + off, 1 + off), CDVector{-v.x, -v.y, v.z},
+            CDVector{0, 0, 1}, CDVector::fromAngles(1.57, 4)}) {
         Directions from(0);
         for (int i = 0; i < 16; ++i)
-          from.x.push_back(float(d.x)), from.y.push_back(float(d.y)), from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
+          from.x.push_back(float(d.x)), from.y.push_back(float(d.y)),
+              from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
         const auto light = unlikeLight(16, 2, 7);
         CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
         model.gatherEach(v, from.view(), light.data(), fast);
         model.CDBRDFModel::gatherEach(v, from.view(), light.data(), plain);
-        EXPECT_LT(apart(fast, plain), 2e-5) << zenith << " off " << off << " towards " << d.x << " " << d.y << " " << d.z;
+        EXPECT_LT(apart(fast, plain), 2e-5)
+            << zenith << " off " << off << " towards " << d.x << " " << d.y << " " << d.z;
       }
   }
 }
@@ -195,7 +217,8 @@ TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
   CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
   model.gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), fast);
   for (std::size_t i = 0; i < 96; ++i)  // each by a thousandth of a radian, to first order
-    for (std::size_t j = 0; j < 3; ++j) light[(4 * i + 1) * 3 + j] += 2e-3f * light[(4 * i + 2) * 3 + j];
+    for (std::size_t j = 0; j < 3; ++j)
+      light[(4 * i + 1) * 3 + j] += 2e-3f * light[(4 * i + 2) * 3 + j];
   model.CDBRDFModel::gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), plain);
   EXPECT_GT(apart(fast, plain), 2e-5);
 }
@@ -206,7 +229,8 @@ TEST(GatherIdentity, GatherEachOfLambertsSurface) {
   const Directions from(90);
   const auto light = unlikeLight(90, 3, 5);
   for (const double s : {0.0, 0.5, 1.0}) {
-    const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}), s);
+    const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}),
+                            s);
     CDSpectralVector<CDStokesVector> fast(grid), plain(grid);
     model.gatherEach({0, 0, 1}, from.view(), light.data(), fast);
     model.CDBRDFModel::gatherEach({0, 0, 1}, from.view(), light.data(), plain);

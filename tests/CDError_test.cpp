@@ -9,7 +9,8 @@
 using namespace malus;
 
 namespace {
-const std::string whole = "plate.csv:7: sigma = -1 rad: must be positive; give a roughness such as 0.2";
+const std::string whole =
+    "plate.csv:7: sigma = -1 rad: must be positive; give a roughness such as 0.2";
 
 std::string said(const CDInputPlace& place, const std::string& value) {
   return CDInputError(place, value, "must be positive", "give a roughness such as 0.2").what();
@@ -27,14 +28,18 @@ TEST(CDErrorIdentity, NegativeControlAnotherLineIsAnotherSentence) {
 TEST(CDErrorIdentity, UnknownPartsLeaveNoTrace) {
   EXPECT_EQ(said({"command line", 0, "--sigma"}, "-1"),
             "command line: --sigma = -1: must be positive; give a roughness such as 0.2");
-  EXPECT_EQ(said({"plate.csv", 0, ""}, ""), "plate.csv: must be positive; give a roughness such as 0.2");
-  EXPECT_EQ(said({"", 0, "sigma"}, ""), "sigma: must be positive; give a roughness such as 0.2");
+  EXPECT_EQ(said({"plate.csv", 0, ""}, ""),
+            "plate.csv: must be positive; give a roughness such as 0.2");
+  EXPECT_EQ(said({"", 0, "sigma"}, ""),
+            "sigma: must be positive; give a roughness such as 0.2");
 }
 
 // Found by make fuzz: a field of a YAML file whose value went over several lines.
 TEST(CDErrorIdentity, AnyValueMakesOneLine) {
-  EXPECT_STREQ(CDInputError({"a.yml", 7, "type"}, "formula 5\nx\x1b[2J", "is not known", "write 1").what(),
-               "a.yml:7: type = formula 5\\nx\\x1b[2J: is not known; write 1");
+  EXPECT_STREQ(
+      CDInputError({"a.yml", 7, "type"}, "formula 5\nx\x1b[2J", "is not known", "write 1")
+          .what(),
+      "a.yml:7: type = formula 5\\nx\\x1b[2J: is not known; write 1");
   const std::string longer(201, 'v');
   EXPECT_STREQ(CDInputError({"a", 0, "f"}, longer, "is long", "cut it").what(),
                ("a: f = " + longer.substr(1) + "...: is long; cut it").c_str());

@@ -67,7 +67,8 @@ TEST(CDGeometryIdentity, BadMeshesNameTheLine) {
 
 namespace {
 struct Shape {
-  double area = 0, least_z = 1;  // of all triangles together; the normal's z that points most downwards
+  double area = 0,
+         least_z = 1;  // of all triangles together; the normal's z that points most downwards
 };
 Shape shapeOf(const CDMesh& mesh) {
   Shape shape;
@@ -79,7 +80,8 @@ Shape shapeOf(const CDMesh& mesh) {
   }
   return shape;
 }
-const std::string arrow = "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\n";  // the last corner points inwards; area 6
+const std::string arrow =
+    "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\n";  // the last corner points inwards; area 6
 }  // namespace
 
 TEST(CDGeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
@@ -92,7 +94,9 @@ TEST(CDGeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
   const Shape naive = shapeOf(parsed(arrow + "f 1 2 3\nf 1 3 4\n"));
   EXPECT_GT(naive.area, 7);
   EXPECT_LT(naive.least_z, 0);
-  EXPECT_NEAR(shapeOf(parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n")).area, 7, rounding * 10);
+  EXPECT_NEAR(
+      shapeOf(parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n")).area, 7,
+      rounding * 10);
 }
 
 TEST(CDGeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
@@ -102,7 +106,8 @@ TEST(CDGeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
     star += fmt::format("v {} {} 0\n", r * std::cos(phi), r * std::sin(phi));
   }
   EXPECT_EQ(complaint(star + "f 1 2 3 4 5 6 7 8 9 10\n"),
-            "m.obj:11: f = f 1 2 3 4 5 6 7 8 9 10: is a polygon that no fan of triangles from one corner fills; let the program "
+            "m.obj:11: f = f 1 2 3 4 5 6 7 8 9 10: is a polygon that no fan of triangles from "
+            "one corner fills; let the program "
             "that made the mesh cut it into triangles");
 }
 

@@ -189,8 +189,10 @@ TEST(CDSkyIdentity, ManyDirectionsAreAnsweredAsOneByOne) {
   const CDSpectralGridPtr grid = CDSpectralGrid::make({500.0, 600.0});
   const CDUniformSky uniform(Spectrum(grid, CDStokesVector(0.3)));
   const auto polarized = skyOf(written(CDSkyConvention::malus));
-  const std::vector<float> x{0.6f, 0, 0.48f, -0.8f}, y{0, 0.8f, 0.64f, 0}, z{0.8f, 0.6f, 0.6f, -0.6f};
-  for (const CDSky* sky : {static_cast<const CDSky*>(&uniform), static_cast<const CDSky*>(polarized.get())}) {
+  const std::vector<float> x{0.6f, 0, 0.48f, -0.8f}, y{0, 0.8f, 0.64f, 0},
+      z{0.8f, 0.6f, 0.6f, -0.6f};
+  for (const CDSky* sky :
+       {static_cast<const CDSky*>(&uniform), static_cast<const CDSky*>(polarized.get())}) {
     const std::size_t bands = sky->grid()->size();
     std::vector<float> many(x.size() * 4 * bands, -1);
     sky->radiances({x.size(), x.data(), y.data(), z.data()}, many.data());

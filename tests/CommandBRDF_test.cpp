@@ -266,7 +266,8 @@ TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
 TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   const Scratch scratch;
   put(scratch / "nef.csv",
-      "wavelength_nm,n,k,bias,sigma,rho_d\n500,1.5,0,0.03,0.2,0.05\n600,1.49,0,0.04,0.3,0.07\n");
+      "wavelength_nm,n,k,bias,sigma,rho_d\n500,1.5,0,0.03,0.2,0.05\n600,1.49,0,0.04,0.3,0."
+      "07\n");
   const auto lasers = CDSpectralGrid::make({500.0, 600.0});
   const auto two = [&](double a, double b) {
     return CDSpectralVector<double>(lasers, std::vector<double>{a, b});
@@ -297,16 +298,18 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   EXPECT_EQ(error(nefds + "--param file=. "),
             "command line: --param file = .: is a directory; " + remedy);
   EXPECT_EQ(error(nefds), "command line: --param file: is missing for nefds; " + remedy);
-  EXPECT_EQ(error(nefds + file + "--wavelength-nm 610 "),
-            "nef.csv: n: does not cover the band at 610 nm; it covers 500 to 600 nm, and nothing "
-            "is extrapolated; give a wider spectrum or leave out the band\n");
+  EXPECT_EQ(
+      error(nefds + file + "--wavelength-nm 610 "),
+      "nef.csv: n: does not cover the band at 610 nm; it covers 500 to 600 nm, and nothing "
+      "is extrapolated; give a wider spectrum or leave out the band\n");
   put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma,rhod\n500,1.5,0,1,1,1\n");
   EXPECT_EQ(error(nefds + file),
             "nef.csv: rhod: is no column of this kind of table; did you mean rho_d? known are: "
             "wavelength_nm, n, k, bias, sigma, rho_d, rho_v\n");
   put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma\n500,1.5,0,1,1\n600,1.5,-1,1,1\n");
-  EXPECT_EQ(error(nefds + file),
-            "nef.csv:3: k = -1 at 600 nm: is beyond its limits; give a value from 0 to 1000000\n");
+  EXPECT_EQ(
+      error(nefds + file),
+      "nef.csv:3: k = -1 at 600 nm: is beyond its limits; give a value from 0 to 1000000\n");
 }
 
 // A model goes into a table of each layout and comes back as a measured surface, near to what it was.
@@ -323,10 +326,10 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
     EXPECT_EQ(written.code, 0) << written.err;
     const bool merl = std::string(model) == "merl";
     const Outcome outcome = malusIn(
-        scratch.path, fmt::format("brdf --model {} --param file={} {} {}", model, file,
-                                  merl ? "--param blue_nm=500 --param green_nm=550 --param red_nm=600"
-                                       : "",
-                                  geometry));
+        scratch.path,
+        fmt::format("brdf --model {} --param file={} {} {}", model, file,
+                    merl ? "--param blue_nm=500 --param green_nm=550 --param red_nm=600" : "",
+                    geometry));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find(fmt::format("{}: ", file)), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(" not realisable; reflects up to 0."), std::string::npos)
@@ -347,21 +350,27 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
   EXPECT_EQ(error("brdf --model measured --param file=t.csv --wavelength-nm 551 " + geometry),
             "t.csv: the table: does not cover the band at 551 nm; it covers 550 to 550 nm, and "
             "nothing is extrapolated; give a wider spectrum or leave out the band\n");
-  EXPECT_EQ(error(glass + "--table t.dat"),
-            "command line: --table = t.dat: has an ending that names no layout; let it end with "
-            ".csv, .pbsdf (KAIST) or .binary (MERL)\n");
-  EXPECT_EQ(error(glass + "--table t.csv --steps 181"),
-            "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
-  EXPECT_EQ(error(glass + "--table t.csv --dhr"),
-            "command line: --table: excludes angles, --geometries, --dhr, --emissivity, --sample, "
-            "--format and --out; ask for one thing at a time\n");
-  for (const std::string other : {"--emissivity", "--format csv", "--theta-i 30", "--out a.csv"})
+  EXPECT_EQ(
+      error(glass + "--table t.dat"),
+      "command line: --table = t.dat: has an ending that names no layout; let it end with "
+      ".csv, .pbsdf (KAIST) or .binary (MERL)\n");
+  EXPECT_EQ(
+      error(glass + "--table t.csv --steps 181"),
+      "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
+  EXPECT_EQ(
+      error(glass + "--table t.csv --dhr"),
+      "command line: --table: excludes angles, --geometries, --dhr, --emissivity, --sample, "
+      "--format and --out; ask for one thing at a time\n");
+  for (const std::string other :
+       {"--emissivity", "--format csv", "--theta-i 30", "--out a.csv"})
     EXPECT_EQ(malusIn(scratch.path, glass + "--table u.csv " + other).code, 2) << other;
   EXPECT_FALSE(std::filesystem::exists(scratch / "u.csv"));
-  EXPECT_EQ(error("brdf --model merl --param file=t.csv --param blue_nm=500 --param green_nm=550 "
-                  "--param red_nm=600 " + geometry),
-            "t.csv: does not begin with the sizes of a MERL file; give a complete file of measured "
-            "reflection\n");
+  EXPECT_EQ(
+      error("brdf --model merl --param file=t.csv --param blue_nm=500 --param green_nm=550 "
+            "--param red_nm=600 " +
+            geometry),
+      "t.csv: does not begin with the sizes of a MERL file; give a complete file of measured "
+      "reflection\n");
 }
 
 TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {

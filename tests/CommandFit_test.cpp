@@ -114,9 +114,10 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
     return malusIn(scratch.path, "fit --samples " + arguments).err;
   };
   EXPECT_NE(line("angle.csv").find("angle.csv:3"), std::string::npos);
-  EXPECT_EQ(line("percent.csv"),
-            "percent.csv:2: Rs = 5: is no reflectance; give a share of the light, 0 to 1, not per "
-            "cent\n");
+  EXPECT_EQ(
+      line("percent.csv"),
+      "percent.csv:2: Rs = 5: is no reflectance; give a share of the light, 0 to 1, not per "
+      "cent\n");
   EXPECT_EQ(line("zero.csv"),
             "zero.csv:2: holds no value other than zero; leave the row out\n");
   EXPECT_EQ(line("normal.csv --fix sigma"),
@@ -145,8 +146,8 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   EXPECT_GT(std::abs(dhr("--model lambertian --param reflectance=0.7") / dhr(coating) - 1),
             0.02);  // negative control
   for (const std::string& bad :
-       {std::string("--basis 5"), "--basis 5.5 " + coating, "--basis 13 " + coating, "--basis x " + coating,
-        "--basis 5 --samples plate.csv " + coating, coating,
+       {std::string("--basis 5"), "--basis 5.5 " + coating, "--basis 13 " + coating,
+        "--basis x " + coating, "--basis 5 --samples plate.csv " + coating, coating,
         "--basis 5 --error 0.1 " + coating,
         std::string("--basis 5 --model lambertian --param reflectance=0"),
         "--basis 5 " + coating + "--wavelength-nm 500 --wavelength-nm 500",

@@ -60,16 +60,20 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
        "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce "
        "--list shows all\n"},
       {"reproduce --lst",
-       "command line: --lst: is no flag of malus reproduce; did you mean --list? known are: --help, "
+       "command line: --lst: is no flag of malus reproduce; did you mean --list? known are: "
+       "--help, "
        "--list, --out, --json, --accept\n"},
       {"sun -lat 43 --lon -77.61",
-       "command line: -lat: is no flag of malus sun; did you mean --lat? known are: --help, --lat, "
+       "command line: -lat: is no flag of malus sun; did you mean --lat? known are: --help, "
+       "--lat, "
        "--lon, --time, --until, --step-min, --points, --out\n"},
       {"--vesion",
-       "command line: --vesion: is no flag of malus; did you mean --version? known are: --help, "
+       "command line: --vesion: is no flag of malus; did you mean --version? known are: "
+       "--help, "
        "--version\n"},
       {"schema surplus",
-       "command line: The following argument was not expected: surplus; malus schema --help shows "
+       "command line: The following argument was not expected: surplus; malus schema --help "
+       "shows "
        "what is understood\n"},
       {"info ''",
        "command line: FILE: must not be empty; malus info --help shows what is understood\n"},

@@ -84,7 +84,8 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
        [&](const fs::path& in) { without(second)(in), without(third)(in); });
   says("holds no tiles", without("chunky-bar-copper."));
   says("seed = 77", [&](const fs::path& in) {
-    fs::copy(scratch / "other", in, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
+    fs::copy(scratch / "other", in,
+             fs::copy_options::overwrite_existing | fs::copy_options::recursive);
   });
   says(second + ".run.json",
        [&](const fs::path& in) { fs::remove(in / (second + ".run.json")); });

@@ -79,7 +79,8 @@ TEST(CommandRenderInvariant, ThePictureIsTheSameBitsForOneThreadAndForThree) {
   ASSERT_EQ(place.render("--threads 1 --out a").code, 0);
   const Outcome three = place.render("--threads 3 --out b");
   ASSERT_EQ(three.code, 0);
-  EXPECT_EQ(std::count(three.err.begin(), three.err.end(), '\n'), 2) << three.err;  // no warning
+  EXPECT_EQ(std::count(three.err.begin(), three.err.end(), '\n'), 2)
+      << three.err;  // no warning
   ASSERT_FALSE(place.file("a/s.img").empty());
   EXPECT_EQ(place.file("a/s.img"), place.file("b/s.img"));
   EXPECT_EQ(place.file("a/s.truth.img"), place.file("b/s.truth.img"));
@@ -188,7 +189,8 @@ const std::vector<BadScene> bad_scenes{
      "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
     {R"({"platform": null})", "lacks \"platform\"; give where the sensor stands"},
     {R"({"geometry": [{"obj": "missing.obj"}]})",
-     "geometry[0].obj = \"missing.obj\": is no file there; name a file; relative paths begin in "},
+     "geometry[0].obj = \"missing.obj\": is no file there; name a file; relative paths begin "
+     "in "},
     {R"({"geometry": [{"obj": "nan.obj"}]})", "nan.obj"},
     {R"({"geometry": []})", "geometry = []: is not allowed here"},
     {R"({"sensor": {"width": 0}})",
@@ -223,9 +225,11 @@ const std::vector<BadScene> bad_scenes{
     {R"({"sun": {"irradiance_W_m2_nm": -1}})",
      "sun.irradiance_W_m2_nm = -1: is not allowed here"},
     {R"({"sun": null, "sky": null})", "has no light"},
-    {R"({"sun": null, "sky": null, "materials": {"ground": {"temperature_K": 0}}})", "has no light"},
+    {R"({"sun": null, "sky": null, "materials": {"ground": {"temperature_K": 0}}})",
+     "has no light"},
     {R"({"materials": {"ground": {"temperature_K": -1}}})",
-     "materials.ground.temperature_K = -1: is not allowed here; give a temperature in K, 0 to 100000"},
+     "materials.ground.temperature_K = -1: is not allowed here; give a temperature in K, 0 to "
+     "100000"},
     {R"({"materials": {"ground": {"temperature_K": "hot"}}})", "give a temperature in K"},
     {R"({"materials": {"ground": {"model": "beard-maxwell", "reflectance": null, "n": 1.304, "k": 7.479,
          "bias": 0.03, "sigma": 0.17, "temperature_K": 300}}})",
@@ -244,13 +248,16 @@ const std::vector<BadScene> bad_scenes{
     {R"({"radiometry": {"rays": [100000000000]}})",
      "radiometry.rays[0] = 100000000000: are too many rays from one hit; give at most 1000000"},
     {R"({"radiometry": {"rays": [5000, 2]}})",
-     "radiometry.rays[0] = 5000: are too many rays from one hit that lead to more; give at most 4096"},
+     "radiometry.rays[0] = 5000: are too many rays from one hit that lead to more; give at "
+     "most 4096"},
     {R"({"platform": {"frames": 1000000000}})",
      "platform.frames = 1000000000: are too many frames; give at most 1000000"},
     {R"({"platform": {"velocity_m_s": [1, 0, 0]}})",
-     "platform.velocity_m_s: does not belong to a platform of the kind \"fixed\"; leave it out, or"},
+     "platform.velocity_m_s: does not belong to a platform of the kind \"fixed\"; leave it "
+     "out, or"},
     {R"({"sky": {"model": "rayleigh"}})",
-     "sky.radiance_W_m2_sr_nm: does not belong to a sky of the model rayleigh; leave it out, or"},
+     "sky.radiance_W_m2_sr_nm: does not belong to a sky of the model rayleigh; leave it out, "
+     "or"},
     {R"({"geometry": [{"ground": {"z_m": 0, "material": "ground"}, "scale": 2}]})",
      "geometry[0].scale: does not belong to a ground"},
     {R"({"bands": {"wavelength_nm": [0.55]}})",
@@ -362,9 +369,9 @@ TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
   const Workplace place(smallScene());
   for (const char* flags :
        {"--tile 0,0,41,10", "--tile 5,5,5,9", "--tile 1,2,3", "--frames 1:2", "--frames x",
-        "--seed -1", "--threads -2", "--out /proc/nowhere", "--tile 0,0,16,16,", "--tile 0,0,16,", "--tile ''",
-        "--frames 0:", "--frames ''", "--seed 99999999999999999999", "--seed ''", "--out ''",
-        "--threads 1000000"}) {
+        "--seed -1", "--threads -2", "--out /proc/nowhere", "--tile 0,0,16,16,",
+        "--tile 0,0,16,", "--tile ''", "--frames 0:", "--frames ''",
+        "--seed 99999999999999999999", "--seed ''", "--out ''", "--threads 1000000"}) {
     const Outcome outcome = place.render(flags);
     EXPECT_EQ(outcome.code, 2) << flags << '\n' << outcome.err;
     EXPECT_EQ(filesBelow(place.scratch.path), 1u) << flags;

@@ -315,12 +315,15 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
 TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
   const Scratch scratch;
   const auto intensity = [&](const std::string& column, const std::string& value) {
-    put(scratch / "one.csv", "tau,mu0,mu,phi_deg," + column + "\n0.5,0.6,0.4,90," + value + "\n");
+    put(scratch / "one.csv",
+        "tau,mu0,mu,phi_deg," + column + "\n0.5,0.6,0.4,90," + value + "\n");
     return tableOf(malusIn(scratch.path, "sky --points one.csv").out).number(0, "I");
   };
   EXPECT_EQ(intensity("depolarisation", "0.03"), intensity("depolarization", "0.03"));
-  EXPECT_NE(intensity("depolarisation", "0.03"), intensity("depolarisation", "0"));  // it is read
-  put(scratch / "two.csv", "tau,mu0,mu,phi_deg,depolarization,depolarisation\n0.5,0.6,0.4,90,0,0\n");
+  EXPECT_NE(intensity("depolarisation", "0.03"),
+            intensity("depolarisation", "0"));  // it is read
+  put(scratch / "two.csv",
+      "tau,mu0,mu,phi_deg,depolarization,depolarisation\n0.5,0.6,0.4,90,0,0\n");
   const Outcome twice = malusIn(scratch.path, "sky --points two.csv");
   EXPECT_EQ(twice.code, 2);
   EXPECT_EQ(twice.err, "two.csv: depolarisation: stands beside depolarization; give it once\n");

@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
+#include "Worlds.hpp"
 #include "imaging/CDRadiometry.hpp"
 #include "light/CDError.hpp"
 #include "light/CDSpectralUnits.hpp"
-#include "Worlds.hpp"
 #include "matter/BRDFBeardMaxwell.hpp"
 #include "matter/BRDFDIRSIG.hpp"
 #include "matter/BRDFDiffuse.hpp"
@@ -77,8 +77,13 @@ TEST(EmissionIdentity, PlanckAtItsEnds) {
   // by hand as in the chapter, with hc/k = 14387.77 um K, whose last digit is worth 4e-7 of the result
   EXPECT_NEAR(planckRadiance(1e4, 300) / 9.92403e-3, 1, 1e-6);
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
-  for (const auto& [bad_nm, bad_K] : {std::pair{0.0, 300.0}, {-1.0, 300.0}, {nan, 300.0}, {inf, 300.0},
-                                      {500.0, -1.0}, {500.0, nan}, {500.0, inf}})
+  for (const auto& [bad_nm, bad_K] : {std::pair{0.0, 300.0},
+                                      {-1.0, 300.0},
+                                      {nan, 300.0},
+                                      {inf, 300.0},
+                                      {500.0, -1.0},
+                                      {500.0, nan},
+                                      {500.0, inf}})
     EXPECT_THROW(planckRadiance(bad_nm, bad_K), CDMathError) << bad_nm << ' ' << bad_K;
 }
 
@@ -135,16 +140,19 @@ const std::vector<Named>& reciprocalModels() {
       {"facets", std::make_shared<BRDFTorranceSparrow>(
                      value(1.5), value(0), value(0.2),
                      CDTorranceSparrowOptions{CDShadowing::smith, CDDiffuseTerm::none})},
-      {"v-grooves", std::make_shared<BRDFTorranceSparrow>(
-                        value(8.31), value(63), value(0.1),
-                        CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::reciprocal})},
+      {"v-grooves",
+       std::make_shared<BRDFTorranceSparrow>(
+           value(8.31), value(63), value(0.1),
+           CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::reciprocal})},
       {"copper", std::make_shared<BRDFTorranceSparrow>(
                      value(8.31), value(63), value(0.1),
                      CDTorranceSparrowOptions{CDShadowing::smith, CDDiffuseTerm::none})},
-      {"copper grooves", std::make_shared<BRDFTorranceSparrow>(
-                     value(8.31), value(63), value(0.1),
-                     CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::none})},
-      {"cosine lobe", std::make_shared<BRDFDIRSIG>(value(0.1), value(2), value(0.35), CDLobeShape::cosine)},
+      {"copper grooves",
+       std::make_shared<BRDFTorranceSparrow>(
+           value(8.31), value(63), value(0.1),
+           CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::none})},
+      {"cosine lobe",
+       std::make_shared<BRDFDIRSIG>(value(0.1), value(2), value(0.35), CDLobeShape::cosine)},
       {"coating", std::make_shared<BRDFGlossyCoating>(value(1.5), value(0.5), 0.1)},
       {"water", std::make_shared<BRDFRoughWater>(value(0.02), CDWaterState{})},
       {"leaves", std::make_shared<BRDFNadalBreon>(value(0.2), 0.03, 8)}};
@@ -159,7 +167,8 @@ TEST(EmissionInvariant, ReciprocalModelsEmitOneLessTheirDHR) {
     for (const double zenith : {0.0, 0.4, 0.9, 1.2, 1.45}) {
       const double difference =
           emissivityOf(*model, zenith).at(0).getScalar() - (1 - model->getDHR(zenith)[0]);
-      EXPECT_LT(std::abs(difference), 1e-3) << name << ' ' << zenith;  // half of integration_error
+      EXPECT_LT(std::abs(difference), 1e-3)
+          << name << ' ' << zenith;  // half of integration_error
       worst = std::max(worst, std::abs(difference));
     }
   EXPECT_GT(std::abs(emissivityOf(*reciprocalModels()[0].model, 1.2).at(0).getScalar() -
@@ -171,8 +180,10 @@ TEST(EmissionInvariant, ReciprocalModelsEmitOneLessTheirDHR) {
 TEST(EmissionInvariant, NoModelIsHanded) {
   for (const auto& [name, model] : reciprocalModels())
     for (const Angles& a : someAngles(30)) {
-      const auto one = model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi)).at(0),
-                 other = model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, -a.phi)).at(0);
+      const auto
+          one = model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi)).at(0),
+          other =
+              model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, -a.phi)).at(0);
       for (int j = 0; j < 4; ++j)
         EXPECT_NEAR(one.getMueller(j, 0), (j < 2 ? 1 : -1) * other.getMueller(j, 0),
                     1e-9 * one.getScalar())  // rounding of facets near grazing
@@ -194,7 +205,8 @@ TEST(EmissionInvariant, GlowIsParallelAndRoughnessBlursIt) {
 
 TEST(EmissionIdentity, RefusesWhatCannotEmit) {
   const auto zero = value(0);
-  const BRDFBeardMaxwell metal({value(1.304), value(7.479), value(0.03), value(0.17), zero, zero});
+  const BRDFBeardMaxwell metal(
+      {value(1.304), value(7.479), value(0.03), value(0.17), zero, zero});
   EXPECT_GT(metal.getDHR(1.55)[0], 1);  // as its chapter says
   EXPECT_NO_THROW(emissivityOf(metal, 0.3));
   try {
@@ -219,11 +231,13 @@ TEST(EmissionIdentity, TheTableIsTheIntegral) {
     CDSpectralVector<CDStokesVector> sum(copper.grid(), CDStokesVector(black, 0.0, 0.0, 0.0));
     emission.add(std::cos(deg * degree), sum);
     const CDStokesVector e = emissivityOf(copper, deg * degree).at(0);
-    EXPECT_NEAR(sum.at(0).getStokes(0) / black - 1, e.getStokes(0), 0.01 * e.getStokes(0)) << deg;
+    EXPECT_NEAR(sum.at(0).getStokes(0) / black - 1, e.getStokes(0), 0.01 * e.getStokes(0))
+        << deg;
     EXPECT_NEAR(sum.at(0).getStokes(1) / black, e.getStokes(1), 0.01 * e.getStokes(0)) << deg;
     most = std::max(most, e.getStokes(0));
   }
-  EXPECT_GT(most, 0.11);  // the peak was there: e_p is 0.23 where R_p = (|n| - Re n)/(|n| + Re n)
+  EXPECT_GT(most,
+            0.11);  // the peak was there: e_p is 0.23 where R_p = (|n| - Re n)/(|n| + Re n)
 }
 
 TEST(EmissionIdentity, NothingAtTheHorizonAndBelow) {
@@ -239,7 +253,8 @@ TEST(EmissionIdentity, NothingAtTheHorizonAndBelow) {
 
 TEST(EmissionInvariant, LookingUpAllocatesNothing) {
   const auto grid = manyBands();
-  const BRDFTorranceSparrow glass(ramp(grid, 1.4, 1.6), ramp(grid, 0, 0.1), ramp(grid, 0.2, 0.2),
+  const BRDFTorranceSparrow glass(ramp(grid, 1.4, 1.6), ramp(grid, 0, 0.1),
+                                  ramp(grid, 0.2, 0.2),
                                   {CDShadowing::smith, CDDiffuseTerm::none});
   const CDEmission emission(glass, 500);
   CDSpectralVector<CDStokesVector> sum(grid);
@@ -259,8 +274,8 @@ constexpr double room_K = 6000;  // hot enough to glow in the room's one band of
 CDWorld roomOf(double warmer_K) {
   const auto& models = reciprocalModels();
   // facets, lobe, water, leaves, matt, facets
-  CDWorld world = worldOf(boxOf({models[0].model, models[4].model, models[6].model, models[7].model,
-                                 lambert(0.3), models[0].model}));
+  CDWorld world = worldOf(boxOf({models[0].model, models[4].model, models[6].model,
+                                 models[7].model, lambert(0.3), models[0].model}));
   for (CDMaterial& wall : world.materials)
     wall.emission = std::make_shared<CDEmission>(*wall.brdf, room_K);
   world.materials[1].emission =
@@ -273,15 +288,16 @@ const CDRadiometryOptions deep{.sampling = CDSampling::importance, .rays = {33, 
 TEST(EmissionInvariant, ARoomOfOneTemperatureIsBlackAndUnpolarised) {
   const CDWorld room = roomOf(0);
   const double black = planckRadiance(550, room_K);
-  for (const CDVector& from : {CDVector{0.3, 0.2, 0.9}, CDVector{0.8, -0.1, 0.3}, CDVector{0.2, 0.6, -0.5},
-                               CDVector{-0.7, 0.4, -0.4}}) {
+  for (const CDVector& from : {CDVector{0.3, 0.2, 0.9}, CDVector{0.8, -0.1, 0.3},
+                               CDVector{0.2, 0.6, -0.5}, CDVector{-0.7, 0.4, -0.4}}) {
     const CDVector to = CDVector{0.1, -0.05, 0} + from * (from.z > 0 ? -1.0 : 1.0);
     CDRadiometry::Ray ray{{0.1, 0.05, 0}, normalized(to), {0.3, 0.9, 0.1}, 0, 0, 0};
     const Estimate seen = estimate(room, deep, ray, 500);
     // five standard errors of 16 numbers; what six reflections leave out; the points of the integral
     const double slack = 2e-3 * black;
     EXPECT_NEAR(seen.mean[0], black, 5 * seen.error[0] + slack);
-    for (std::size_t c = 1; c < 4; ++c) EXPECT_NEAR(seen.mean[c], 0, 5 * seen.error[c] + slack) << c;
+    for (std::size_t c = 1; c < 4; ++c)
+      EXPECT_NEAR(seen.mean[c], 0, 5 * seen.error[c] + slack) << c;
     EXPECT_LT(seen.error[0], 4e-3 * black);  // the comparison means something
   }
 }
@@ -306,12 +322,14 @@ TEST(EmissionInvariant, ZeroKelvinChangesNoBit) {
     world->sun.emplace(CDSun{normalized({0.3, 0.2, 0.9}), spectrumOf(CDStokesVector(2.0))});
     for (CDMaterial& wall : world->materials) wall.emission = nullptr;
   }
-  for (CDMaterial& wall : cold.materials) wall.emission = std::make_shared<CDEmission>(*wall.brdf, 0);
+  for (CDMaterial& wall : cold.materials)
+    wall.emission = std::make_shared<CDEmission>(*wall.brdf, 0);
   cold.sky = none.sky = uniformSky(1);
   CDRadiometryOptions options;
   options.rays = {40, 3};
   const auto look = [&](const CDWorld& world) {
-    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), options);
+    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
+                                  options);
     const CDRadiometry::Ray ray = looking({0, 0, -1}, {1, 0.5, 2}, {1, 0, 0});
     std::array<double, 4> out{};
     radiometry.radiance({&ray, 1}, out);

@@ -49,7 +49,8 @@ TEST(ErrataPublished, EveryFindingIsVerified) {
       {"N1", reproduceN1},   {"N2", reproduceN2},  {"N3", reproduceN3}, {"N4", reproduceN4},
       {"N5", reproduceN5},   {"N6", reproduceN6},  {"N7", reproduceN7}, {"N9", reproduceN9},
       {"N10", reproduceN10}, {"N11", reproduceN11}};
-  for (const auto& [id, function] : findings) EXPECT_TRUE(named(ran(id, function), CDVerdict::differs).empty()) << id;
+  for (const auto& [id, function] : findings)
+    EXPECT_TRUE(named(ran(id, function), CDVerdict::differs).empty()) << id;
 }
 
 TEST(ErrataPublished, TheListHoldsAllCommittedErrataAndNoOthers) {

@@ -231,7 +231,7 @@ TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
   ASSERT_EQ(table.theta_d.nodes, (std::vector<double>{0, 1.5}));
   const CDMuellerMatrix f =
       own(table).getBRDF(CDBRDFGeometry::fromDegrees(40, 40, 180)).at(1);  // axes agree there
-  const double share = 40 * degree / 1.5, c = std::cos(40 * degree);  // both nodes alike
+  const double share = 40 * degree / 1.5, c = std::cos(40 * degree);       // both nodes alike
   const double between = (1 - share + share * std::pow(std::cos(1.5), 2)) / (c * c);
   for (int k = 0; k < 16; ++k) {
     const int row = k / 4, column = k % 4;
@@ -248,13 +248,16 @@ TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
   const auto refusedWith = [&](std::size_t at, const auto& number, const char* problem) {
     std::string other = bytes + data;
     std::memcpy(&other[at], &number, sizeof number);
-    EXPECT_NE(refusal([&] { from(scratch, other); }).find(problem), std::string::npos) << problem;
+    EXPECT_NE(refusal([&] { from(scratch, other); }).find(problem), std::string::npos)
+        << problem;
   };
   const std::size_t end = bytes.size() + data.size();
   refusedWith(end - 8, 1.6f, "has nodes of theta_d that do not ascend");
   refusedWith(end - 4, std::nanf(""), "has nodes of theta_d that do not ascend");
-  refusedWith(4096 + 2, std::uint16_t{450}, "has wavelengths that do not ascend from above zero");
-  const std::size_t shape = bytes.find("M\x06") + 12;  // behind 2 bytes of 6, 1 of 10, 8 of offset
+  refusedWith(4096 + 2, std::uint16_t{450},
+              "has wavelengths that do not ascend from above zero");
+  const std::size_t shape =
+      bytes.find("M\x06") + 12;  // behind 2 bytes of 6, 1 of 10, 8 of offset
   refusedWith(shape, std::uint64_t{2}, "has a field M whose shape is not that of its axes");
   for (const std::size_t length : {13u, 17u, 60u, 200u, 4100u, 4200u}) {
     const std::string cut = refusal([&] { from(scratch, (bytes + data).substr(0, length)); });

@@ -69,7 +69,10 @@ TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
   const Scratch scratch;
   json scene = mixedScene();
   json& copper = scene["materials"]["copper-010"];
-  copper = {{"model", "torrance-sparrow"}, {"n", 0.405}, {"k", 2.95}, {"sigma", 0.2},
+  copper = {{"model", "torrance-sparrow"},
+            {"n", 0.405},
+            {"k", 2.95},
+            {"sigma", 0.2},
             {"diffuse", "reciprocal"}};
   put(scratch / "s.json", scene.dump(1));
   EXPECT_NO_THROW(readScene(scratch / "s.json"));
@@ -89,9 +92,9 @@ TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
 TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
   const Scratch scratch;
   json scene = mixedScene();
-  scene["materials"]["copper-015"] = {{"model", "layered-paint"}, {"pigment_n", 2.75},
-                                      {"radius", 110},            {"pvc", 0.1},
-                                      {"thickness", 20},          {"sigma", 0.1}};
+  scene["materials"]["copper-015"] = {
+      {"model", "layered-paint"}, {"pigment_n", 2.75}, {"radius", 110}, {"pvc", 0.1},
+      {"thickness", 20},          {"sigma", 0.1}};
   put(scratch / "s.json", scene.dump(1));
   const CDFrame frame = renderScene(readScene(scratch / "s.json"));
   for (std::size_t y = 0; y < frame.height; ++y)
@@ -100,7 +103,8 @@ TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
       ASSERT_GT(s[0], 0);
       ASSERT_LE(std::sqrt(s[1] * s[1] + s[2] * s[2] + s[3] * s[3]), s[0] * (1 + 1e-6));
     }
-  scene["materials"]["copper-015"]["radius"] = 50000;  // negative control: too large for the series
+  scene["materials"]["copper-015"]["radius"] =
+      50000;  // negative control: too large for the series
   put(scratch / "s.json", scene.dump(1));
   const Outcome outcome = malusIn(scratch.path, "render s.json --out a");
   EXPECT_EQ(outcome.code, 2);

@@ -23,8 +23,9 @@ double largestDOP(const CDBRDFModel& model, const std::vector<CDBRDFGeometry>& g
   for (const CDBRDFGeometry& g : geometries) {
     const CDMuellerMatrix f = model.getBRDF(g).at(0);
     if (f.getScalar() > 0)
-      most = std::max(most, std::hypot(f.getMueller(1, 0), f.getMueller(2, 0), f.getMueller(3, 0)) /
-                                f.getScalar());
+      most = std::max(most,
+                      std::hypot(f.getMueller(1, 0), f.getMueller(2, 0), f.getMueller(3, 0)) /
+                          f.getScalar());
   }
   return most;
 }
@@ -37,7 +38,8 @@ std::vector<CDBRDFGeometry> everywhere() {
 /// Straight back to oblique sources: facets are met face to face.
 std::vector<CDBRDFGeometry> straightBack() {
   std::vector<CDBRDFGeometry> all;
-  for (const double deg : {20.0, 40.0, 60.0, 75.0}) all.push_back(CDBRDFGeometry::fromDegrees(deg, deg, 0));
+  for (const double deg : {20.0, 40.0, 60.0, 75.0})
+    all.push_back(CDBRDFGeometry::fromDegrees(deg, deg, 0));
   return all;
 }
 // A polarisation of less than a thousandth is none; one of rounding would be 1e-12, and the least of the promised ones
@@ -66,7 +68,8 @@ TEST(ModelsInvariant, NegativeControlEachPromiseIsMadeAndNotMade) {
   std::array<std::set<bool>, 4> seen;
   for (const CDModelEntry& entry : modelEntries()) {
     const CDModelTraits& t = entry.traits;
-    const std::array<bool, 4> promises{t.polarized, t.diffuse_polarized, t.reciprocal, t.conserves};
+    const std::array<bool, 4> promises{t.polarized, t.diffuse_polarized, t.reciprocal,
+                                       t.conserves};
     for (std::size_t i = 0; i < 4; ++i) seen[i].insert(promises[i]);
   }
   for (const auto& answers : seen) EXPECT_EQ(answers.size(), 2u);
@@ -82,7 +85,8 @@ TEST(ModelsIdentity, EveryModelSaysWhatItIsFor) {
     for (const CDParameter& parameter : entry.parameters) {
       EXPECT_FALSE(parameter.meaning.empty()) << entry.name << ' ' << parameter.name;
       if (parameter.otherwise.empty()) {
-        EXPECT_NE((' ' + entry.traits.example).find(' ' + parameter.name + '='), std::string::npos)
+        EXPECT_NE((' ' + entry.traits.example).find(' ' + parameter.name + '='),
+                  std::string::npos)
             << entry.name << ": the example lacks " << parameter.name;
       }
     }

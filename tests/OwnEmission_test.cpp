@@ -12,8 +12,9 @@ using namespace malus;
 
 TEST(OwnEmissionInvariant, EveryClaimHolds) {
   const CDItem item = ran("X.emission", reproduceXEmission);
-  const std::set<std::string> all{"parallel",        "waves", "metal.60deg", "metal.hemisphere", "water.hemisphere",
-                                  "stefan-boltzmann", "wien",  "night",       "equilibrium"};
+  const std::set<std::string> all{
+      "parallel",         "waves", "metal.60deg", "metal.hemisphere", "water.hemisphere",
+      "stefan-boltzmann", "wien",  "night",       "equilibrium"};
   EXPECT_EQ(named(item, CDVerdict::reproduced), all);
   EXPECT_EQ(item.pictures().size(), 2u);
   EXPECT_TRUE(named(item, CDVerdict::differs).empty());

@@ -11,14 +11,11 @@
 using namespace malus;
 
 namespace {
-const std::map<std::string, CDItemFunction> items{{"X.lambert", reproduceXLambert},
-                                                   {"X.torrance-sparrow", reproduceXTorranceSparrow},
-                                                   {"X.dirsig", reproduceXDIRSIG},
-                                                   {"X.glossy", reproduceXGlossy},
-                                                   {"X.water", reproduceXWater},
-                                                   {"X.beard-maxwell", reproduceXBeardMaxwell},
-                                                   {"X.vegetation", reproduceXVegetation},
-                                                   {"X.sandford", reproduceXSandford}};
+const std::map<std::string, CDItemFunction> items{
+    {"X.lambert", reproduceXLambert},       {"X.torrance-sparrow", reproduceXTorranceSparrow},
+    {"X.dirsig", reproduceXDIRSIG},         {"X.glossy", reproduceXGlossy},
+    {"X.water", reproduceXWater},           {"X.beard-maxwell", reproduceXBeardMaxwell},
+    {"X.vegetation", reproduceXVegetation}, {"X.sandford", reproduceXSandford}};
 }  // namespace
 
 TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
@@ -37,7 +34,8 @@ TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
 // The claims about tables hold, and their numbers are of a size that could have failed them.
 TEST(OwnModelsInvariant, TablesComeNearerWithTheSquareOfTheStep) {
   const CDItem item = ran("X.measured", reproduceXMeasured);
-  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"order", "narrow", "wide"}));
+  EXPECT_EQ(named(item, CDVerdict::reproduced),
+            (std::set<std::string>{"order", "narrow", "wide"}));
   const auto values = valuesOf(item);
   EXPECT_GT(std::stod(values.at("plain")), std::stod(values.at("half")));
   EXPECT_GT(std::stod(values.at("half")), 0.01);  // negative control: there is an error

@@ -30,7 +30,7 @@ TEST(OwnSpectraRegression, ValuesThatTheProseRestsOn) {
   auto values = valuesOf(measured());
   EXPECT_EQ(values["narrow"], "1.0000");
   EXPECT_EQ(values["rectangular"], "0.9500");
-  EXPECT_EQ(values["peak.nm"], "500");  // between blue and green
-  EXPECT_GT(std::stod(values["peak.eV"]), 780);  // beyond what an eye sees
+  EXPECT_EQ(values["peak.nm"], "500");                 // between blue and green
+  EXPECT_GT(std::stod(values["peak.eV"]), 780);        // beyond what an eye sees
   EXPECT_NE(values["gaussian"], values["tabulated"]);  // negative control
 }

@@ -16,6 +16,7 @@ TEST(OwnSpeedInvariant, TheSameWorkAndTheSamePicture) {
   EXPECT_EQ(verdicts["numbers"], CDVerdict::reproduced);
   EXPECT_EQ(verdicts.count("time"), 1u);
   auto values = valuesOf(item);
-  EXPECT_GT(std::stod(values["polarized"]), 2) << "negative control: polarised light is more numbers";
+  EXPECT_GT(std::stod(values["polarized"]), 2)
+      << "negative control: polarised light is more numbers";
   EXPECT_GT(std::stod(values["ratio"]), 0);
 }

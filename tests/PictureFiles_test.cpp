@@ -22,7 +22,8 @@ CDPictureFile picture() { return {5, 3, {"R", "G", "B"}, bytes}; }
 
 unsigned bigEndian(const std::string& text, std::size_t at) {
   unsigned number = 0;
-  for (std::size_t i = 0; i < 4; ++i) number = number << 8 | static_cast<unsigned char>(text[at + i]);
+  for (std::size_t i = 0; i < 4; ++i)
+    number = number << 8 | static_cast<unsigned char>(text[at + i]);
   return number;
 }
 }  // namespace
@@ -53,8 +54,9 @@ TEST(PictureFilesPublished, PngBeginsAsItsStandardSays) {
 TEST(PictureFilesPublished, ExrHoldsChannelsAndWords) {
   const Scratch scratch;
   const std::vector<float> floats{1, 2, 3, 4};
-  savePicture({2, 1, {"S0.450,000000nm", "S1.450,000000nm"}, {}, floats, {{"emissiveUnits", "W"}}},
-              scratch / "x.exr");
+  savePicture(
+      {2, 1, {"S0.450,000000nm", "S1.450,000000nm"}, {}, floats, {{"emissiveUnits", "W"}}},
+      scratch / "x.exr");
   const std::string exr = contents(scratch / "x.exr");
   EXPECT_EQ(exr.substr(0, 4), "\x76\x2f\x31\x01");
   EXPECT_NE(exr.find("S1.450,000000nm"), std::string::npos);

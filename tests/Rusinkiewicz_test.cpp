@@ -70,8 +70,7 @@ TEST(RusinkiewiczPublished, TheDefinition) {
     const CDVector i = CDVector::fromAngles(a.theta_i, phi_i),
                    r = CDVector::fromAngles(a.theta_r, phi_i + a.phi), h = normalized(i + r);
     const double theta_h = h.getZenith();
-    const CDVector d =
-        turned(turned(i, {0, 0, 1}, -h.getAzimuth()), {0, 1, 0}, -theta_h);
+    const CDVector d = turned(turned(i, {0, 0, 1}, -h.getAzimuth()), {0, 1, 0}, -theta_h);
     const CDHalfDifference ours =
         halfDifference(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi));
     // the turned vectors have errors of 1e-16, which an azimuth sees divided by the sines
@@ -109,10 +108,8 @@ TEST(RusinkiewiczIdentity, ThereAndBack) {
 
 TEST(RusinkiewiczIdentity, ExchangeAddsHalfATurn) {
   for (const Drawn3& a : drawn(200, 1.5)) {
-    const auto there =
-        halfDifference(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi));
-    const auto back =
-        halfDifference(CDBRDFGeometry::fromAngles(a.theta_r, a.theta_i, -a.phi));
+    const auto there = halfDifference(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi));
+    const auto back = halfDifference(CDBRDFGeometry::fromAngles(a.theta_r, a.theta_i, -a.phi));
     EXPECT_NEAR(there.cos_h, back.cos_h, 1e-15);
     EXPECT_NEAR(there.cos_d, back.cos_d, 1e-15);
     EXPECT_LT(apart(there.getPhiD() + pi, back.getPhiD()), 1e-12);

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cstdint>
 #include <map>
 #include <random>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,7 +18,9 @@ namespace {
 struct Writer {
   explicit Writer(std::uint32_t seed) : random(seed) {}
   std::mt19937 random;
-  int pick(int low, int high) { return low + static_cast<int>(random() % static_cast<unsigned>(high - low)); }
+  int pick(int low, int high) {
+    return low + static_cast<int>(random() % static_cast<unsigned>(high - low));
+  }
   const std::string& oneOf(const std::vector<std::string>& words) {
     return words[static_cast<std::size_t>(pick(0, static_cast<int>(words.size())))];
   }
@@ -37,20 +39,33 @@ struct Writer {
     }
   }
   void gap() {
-    static const std::vector<std::string> gaps{"", "", " ", "\n", "\t \r\n", "// note: {\"a\", 1}\n",
-                                               "/* 1, [2]\n \"x */", "/**/", " // \"\n  "};
+    static const std::vector<std::string> gaps{"",
+                                               "",
+                                               " ",
+                                               "\n",
+                                               "\t \r\n",
+                                               "// note: {\"a\", 1}\n",
+                                               "/* 1, [2]\n \"x */",
+                                               "/**/",
+                                               " // \"\n  "};
     write(oneOf(gaps));
   }
   void value(const std::string& path, int depth) {
     gap();
     places[path] = {line, column};
     const int kind = depth == 0 ? 5 : pick(0, depth > 3 ? 4 : 6);
-    static const std::vector<std::string> leaves{"true", "null", "-12.5e+3", "7", "0.25", "false"};
-    static const std::vector<std::string> texts{"\"\"", "\"a\\\"b\"", "\"\\\\\"", "\"{//\"", "\"\u00e9t\u00e9\""};
-    if (kind < 2) write(oneOf(leaves));
-    else if (kind < 4) write(oneOf(texts));
-    else if (kind == 4) list(path, depth);
-    else object(path, depth);
+    static const std::vector<std::string> leaves{"true", "null", "-12.5e+3",
+                                                 "7",    "0.25", "false"};
+    static const std::vector<std::string> texts{"\"\"", "\"a\\\"b\"", "\"\\\\\"", "\"{//\"",
+                                                "\"\u00e9t\u00e9\""};
+    if (kind < 2)
+      write(oneOf(leaves));
+    else if (kind < 4)
+      write(oneOf(texts));
+    else if (kind == 4)
+      list(path, depth);
+    else
+      object(path, depth);
     gap();
   }
   void list(const std::string& path, int depth) {
@@ -88,7 +103,9 @@ std::string complaint(const std::string& text) {
   }
   return "accepted";
 }
-bool begins(const std::string& text, const std::string& beginning) { return text.starts_with(beginning); }
+bool begins(const std::string& text, const std::string& beginning) {
+  return text.starts_with(beginning);
+}
 }  // namespace
 
 RC_GTEST_PROP(SceneTextIdentity, EveryValueStandsWhereItsWriterPutIt, ()) {
@@ -125,10 +142,13 @@ TEST(SceneTextIdentity, ANodeComplainsWithItsPlacePathAndValue) {
 }
 
 TEST(SceneTextIdentity, BrokenTextsAreAnsweredWithLineAndColumn) {
-  EXPECT_TRUE(begins(complaint("{\n \"a\": tru\n}"), "s.json:2:")) << complaint("{\n \"a\": tru\n}");
-  EXPECT_TRUE(begins(complaint("{\"a\": 1,}"), "s.json:1:9: is not valid JSON: unexpected '}'"));
+  EXPECT_TRUE(begins(complaint("{\n \"a\": tru\n}"), "s.json:2:"))
+      << complaint("{\n \"a\": tru\n}");
+  EXPECT_TRUE(
+      begins(complaint("{\"a\": 1,}"), "s.json:1:9: is not valid JSON: unexpected '}'"));
   EXPECT_TRUE(begins(complaint(""), "s.json:1:1: is not valid JSON: unexpected end of input"));
-  EXPECT_TRUE(begins(complaint("{\"a\": 1e999}"), "s.json:1:11: is not valid JSON: number overflow"))
+  EXPECT_TRUE(
+      begins(complaint("{\"a\": 1e999}"), "s.json:1:11: is not valid JSON: number overflow"))
       << complaint("{\"a\": 1e999}");
   EXPECT_TRUE(begins(complaint("{\"a\": NaN}"), "s.json:1:"));
   EXPECT_TRUE(begins(complaint("{\"a\": 1} x"), "s.json:1:"));
@@ -138,7 +158,8 @@ TEST(SceneTextIdentity, BrokenTextsAreAnsweredWithLineAndColumn) {
 }
 
 TEST(SceneTextIdentity, AKeyThatComesTwiceIsRefusedWhereItComesAgain) {
-  EXPECT_TRUE(begins(complaint("{\"a\": 1,\n  \"a\": 2}"), "s.json:2:3: has the key \"a\" twice"));
+  EXPECT_TRUE(
+      begins(complaint("{\"a\": 1,\n  \"a\": 2}"), "s.json:2:3: has the key \"a\" twice"));
   EXPECT_EQ(complaint("{\"a\": {\"a\": 2}}"), "accepted");
 }
 
@@ -160,7 +181,8 @@ TEST(SceneTextIdentity, APatchChangesValuesAndKeepsPlaces) {
 TEST(SceneTextIdentity, AKeyThatOnlyAPatchHasStandsWhereTheSceneBegins) {
   CDSceneText text("{\"radiometry\": {}}", "s.json", ".");
   text.patch("{\"sensr\": {\"width\": 3}, \"radiometry\": {\"seed\": 1}}");
-  EXPECT_EQ(text.root()["sensr"].place().column, 1);  // a name without a dot has no parent but the root
+  EXPECT_EQ(text.root()["sensr"].place().column,
+            1);  // a name without a dot has no parent but the root
   EXPECT_EQ(text.root().keyPlace("sensr").column, 1);
   EXPECT_EQ(text.root()["radiometry"]["seed"].place().column, 16);  // negative control
 }

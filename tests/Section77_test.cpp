@@ -83,7 +83,6 @@ TEST(Section77Published, NegativeControlAChangedDigitOfAPrintedSkyIsSeen) {
 
 TEST(Section77Invariant, CopperSeesThatTheSkyIsPolarisedAndMattChunksDoNot) {
   const CDItem item = ran("X.realsky", reproduceXRealSky);
-  EXPECT_EQ(named(item, CDVerdict::reproduced),
-            (std::set<std::string>{"copper", "matt"}));
+  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"copper", "matt"}));
   EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
 }

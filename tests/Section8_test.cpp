@@ -13,9 +13,9 @@ using namespace malus;
 TEST(Section8Invariant, TheExperimentHasItsVerdicts) {
   const CDItem item = ran("C7", reproduceC7);
   EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{"polarizer"});
-  EXPECT_EQ(named(item, CDVerdict::reproduced),
-            (std::set<std::string>{"exact", "reflectivities", "roughness", "errors",
-                                   "normal"}));
+  EXPECT_EQ(
+      named(item, CDVerdict::reproduced),
+      (std::set<std::string>{"exact", "reflectivities", "roughness", "errors", "normal"}));
   EXPECT_EQ(item.tables().size(), 3u);
   EXPECT_EQ(item.pictures().size(), 1u);
   // negative control: noise makes a mistake at all

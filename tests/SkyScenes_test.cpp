@@ -131,9 +131,9 @@ TEST(SkyScenesInvariant, ADomeWithAerosolIsASkyOfAScene) {
 // The scene of figures 7.37 and 7.38 as it is shipped, small: polarised light at both wavelengths, S3 included.
 TEST(SkyScenesInvariant, TheShippedSceneUnderThePolarisedSky) {
   const Scratch scratch;
-  const std::string scene = (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
-                             "scenes/chunky-bar-sky.json")
-                                .string();
+  const std::string scene =
+      (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() / "scenes/chunky-bar-sky.json")
+          .string();
   const CDFrame frame = renderScene(readScene(
       scene,
       R"({"sensor": {"width": 16, "height": 16, "focal_length_mm": 15, "pixel_pitch_um": 625}, "radiometry": {"rays": [46, 1]}})"));

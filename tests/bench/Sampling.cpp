@@ -21,8 +21,10 @@ struct Peer {
   const char* mode;
   double error, seconds;
 };
-constexpr Peer one_band[] = {{"LLVM", 0.167, 2.1}, {"LLVM, sun weighted", 0.116, 2.1}, {"scalar", 0.167, 8.7}};
-constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.167, 64}, {"scalar, 100 bands", 0.167, 219}};
+constexpr Peer one_band[] = {
+    {"LLVM", 0.167, 2.1}, {"LLVM, sun weighted", 0.116, 2.1}, {"scalar", 0.167, 8.7}};
+constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.167, 64},
+                                  {"scalar, 100 bands", 0.167, 219}};
 
 std::vector<CDSamplingRun> measure(CDSamplingTask task) {
   task.side = side;
@@ -34,9 +36,9 @@ std::vector<CDSamplingRun> measure(CDSamplingTask task) {
 
 void print(const std::vector<CDSamplingRun>& runs, const std::string& note) {
   for (const CDSamplingRun& run : runs)
-    fmt::print("{:28} {:4} {:8.4f} {:8.4f} {:8.4f} {:8.4f} {:9.3f} {:10.4f}\n", run.sampler + note, run.rays,
-               run.errors[0], run.errors[1], run.errors[2], run.errors[3], scale * run.seconds,
-               run.errors[0] * scale * run.seconds);
+    fmt::print("{:28} {:4} {:8.4f} {:8.4f} {:8.4f} {:8.4f} {:9.3f} {:10.4f}\n",
+               run.sampler + note, run.rays, run.errors[0], run.errors[1], run.errors[2],
+               run.errors[3], scale * run.seconds, run.errors[0] * scale * run.seconds);
 }
 
 /// Seconds to an error of S0: between neighbours a line on logarithmic axes, from the fewest rays on.
@@ -45,7 +47,8 @@ double secondsTo(double error, const std::vector<CDSamplingRun>& runs) {
     if (runs[i].errors[0] > error) continue;
     if (i == 0) return scale * runs[0].seconds;
     const CDSamplingRun &before = runs[i - 1], &after = runs[i];
-    const double t = std::log(before.errors[0] / error) / std::log(before.errors[0] / after.errors[0]);
+    const double t =
+        std::log(before.errors[0] / error) / std::log(before.errors[0] / after.errors[0]);
     return scale * before.seconds * std::pow(after.seconds / before.seconds, t);
   }
   return std::nan("");
@@ -55,24 +58,31 @@ template <std::size_t N>
 void compare(const Peer (&peers)[N], const std::vector<CDSamplingRun>& runs) {
   for (const Peer& peer : peers) {
     const double ours = secondsTo(peer.error, runs);
-    fmt::print("{:28}      {:8.3f} {:26} {:9.3f} {:10.4f}   ours {:.3f} s to this error: {:.0f} times faster\n",
-               peer.mode, peer.error, "", peer.seconds, peer.error * peer.seconds, ours, peer.seconds / ours);
+    fmt::print(
+        "{:28}      {:8.3f} {:26} {:9.3f} {:10.4f}   ours {:.3f} s to this error: {:.0f} times "
+        "faster\n",
+        peer.mode, peer.error, "", peer.seconds, peer.error * peer.seconds, ours,
+        peer.seconds / ours);
   }
 }
 }  // namespace
 
 void printSamplings() {
   fmt::print(
-      "\nError x time: copper chunky bar, polarised, 256 x 256 pixels (timed on {0} x {0}; processor time over two)\n"
+      "\nError x time: copper chunky bar, polarised, 256 x 256 pixels (timed on {0} x {0}; "
+      "processor time over two)\n"
       "{1:28} {2:>4} {3:>8} {4:>8} {5:>8} {6:>8} {7:>9} {8:>10}\n",
       side, "rms error / mean S0", "rays", "S0", "S1", "S2", "S3", "seconds", "S0 x s");
   print(measure({}), "");
   const std::vector<int> rays{2, 4, 8, 16, 32, 64};
   const auto one = measure({.rays = rays, .second = 2, .reference_rays = 512, .only = "sobol"});
-  const auto hundred = measure({.rays = rays, .second = 2, .reference_rays = 256, .only = "sobol", .bands = 100});
+  const auto hundred = measure(
+      {.rays = rays, .second = 2, .reference_rays = 256, .only = "sobol", .bands = 100});
   print(one, ", sky twice");
   print(hundred, ", 100 bands");
-  fmt::print("Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky, 64 paths):\n");
+  fmt::print(
+      "Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky, 64 "
+      "paths):\n");
   compare(one_band, one);
   compare(hundred_bands, hundred);
 }

@@ -1,5 +1,7 @@
 // What may happen at a door for users' files: it opens, or it says in one line what is wrong. All else is a finding.
 #pragma once
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -7,7 +9,6 @@
 #include <fstream>
 #include <string>
 #include <string_view>
-#include <unistd.h>
 
 #include "light/CDError.hpp"
 
@@ -33,7 +34,8 @@ inline std::string textOf(const std::uint8_t* data, std::size_t size) {
 
 /// A file of this process with the given end of its name and content.
 inline std::filesystem::path fileWith(const std::string& text, const std::string& extension) {
-  const auto path = std::filesystem::temp_directory_path() / ("malus-fuzz-" + std::to_string(getpid()) + extension);
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("malus-fuzz-" + std::to_string(getpid()) + extension);
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
   return path;
 }

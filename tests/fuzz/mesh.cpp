@@ -9,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const CDMesh mesh = readOBJ(fuzzing::fileWith(fuzzing::textOf(data, size), ".obj"));
     CDGeometryBuilder builder;
     builder.addMesh(mesh, {});
-    builder.addMesh(mesh, CDTransform::translate({1, 2, 3}).after(CDTransform::scale(-2)), "again.");
+    builder.addMesh(mesh, CDTransform::translate({1, 2, 3}).after(CDTransform::scale(-2)),
+                    "again.");
     const CDSceneGeometry scene = std::move(builder).build();
     for (const CDTriangle& t : scene.triangles())  // what has an area has a normal
       if (!(scene.normal(t).getLength() > 0.9)) std::abort();

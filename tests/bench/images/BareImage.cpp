@@ -16,19 +16,25 @@ inline V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline V operator*(V a, float f) { return {a.x * f, a.y * f, a.z * f}; }
 inline float dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline V cross(V a, V b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline V cross(V a, V b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline V unit(V a) { return a * (1 / std::sqrt(dot(a, a))); }
 
 struct Hemisphere {  // a grid, padded to sixteens
   int count = 0;
   alignas(64) std::array<float, most> x{}, y{}, z{}, weight{};
   explicit Hemisphere(int rays) {
-    const int zeniths = std::max(1, int(std::lround(std::sqrt(rays / 4.0)))), azimuths = rays / zeniths;
+    const int zeniths = std::max(1, int(std::lround(std::sqrt(rays / 4.0)))),
+              azimuths = rays / zeniths;
     for (int j = 0; j < zeniths; ++j)
       for (int i = 0; i < azimuths; ++i, ++count) {
-        const float step = pi / 2 / float(zeniths), t = (float(j) + 0.5f) * step, p = 2 * pi * float(i) / float(azimuths);
-        x[count] = std::sin(t) * std::cos(p), y[count] = std::sin(t) * std::sin(p), z[count] = std::cos(t);
-        weight[count] = std::cos(t) * 2 * pi / float(azimuths) * (std::cos(float(j) * step) - std::cos(float(j + 1) * step));
+        const float step = pi / 2 / float(zeniths), t = (float(j) + 0.5f) * step,
+                    p = 2 * pi * float(i) / float(azimuths);
+        x[count] = std::sin(t) * std::cos(p), y[count] = std::sin(t) * std::sin(p),
+        z[count] = std::cos(t);
+        weight[count] = std::cos(t) * 2 * pi / float(azimuths) *
+                        (std::cos(float(j) * step) - std::cos(float(j + 1) * step));
       }
     while (count % 16 != 0) z[count++] = 1;
   }
@@ -48,7 +54,8 @@ Frame frameOf(V n, std::uint32_t random) {
 inline float exponential(float x) {
   x = std::max(x, -87.0f);
   const float n = std::floor(x * 1.44269504f + 0.5f), r = x - n * 0.69314718f;
-  const float e = 1 + r * (1 + r * (0.5f + r * (0.16666667f + r * (0.041666667f + r * 0.0083333333f))));
+  const float e =
+      1 + r * (1 + r * (0.5f + r * (0.16666667f + r * (0.041666667f + r * 0.0083333333f))));
   return e * std::bit_cast<float>((std::int32_t(n) + 127) << 23);
 }
 
@@ -56,30 +63,35 @@ struct Facet {
   float factor, c, s2, cos2r, sin2r, cos2i, sin2i;
 };
 inline Facet facet(float ix, float iy, float iz, V r, float precision, float norm) {
-  const float cosine = ix * r.x + iy * r.y + iz * r.z, across = ix * r.y - iy * r.x, one = 1 + cosine, up = iz + r.z;
-  const float secant2 = 2 * one / (up * up), groove = std::min(1.0f, 2 * up * std::min(iz, r.z) / one);
+  const float cosine = ix * r.x + iy * r.y + iz * r.z, across = ix * r.y - iy * r.x,
+              one = 1 + cosine, up = iz + r.z;
+  const float secant2 = 2 * one / (up * up),
+              groove = std::min(1.0f, 2 * up * std::min(iz, r.z) / one);
   const float in = r.z - cosine * iz, out = iz - cosine * r.z, a2 = across * across;
   const float ni = 1 / (in * in + a2 + 1e-30f), no = 1 / (out * out + a2 + 1e-30f);
-  return {norm * secant2 * secant2 * exponential((1 - secant2) * precision) * groove / (iz * r.z),
-          std::sqrt(one * 0.5f),
-          (1 - cosine) * 0.5f,
-          (out * out - a2) * no,
-          -2 * out * across * no,
-          (in * in - a2) * ni,
-          2 * in * across * ni};
+  return {
+      norm * secant2 * secant2 * exponential((1 - secant2) * precision) * groove / (iz * r.z),
+      std::sqrt(one * 0.5f),
+      (1 - cosine) * 0.5f,
+      (out * out - a2) * no,
+      -2 * out * across * no,
+      (in * in - a2) * ni,
+      2 * in * across * ni};
 }
 struct Four {
   float sum, diff, re, im;
 };
 inline Four fresnel(float c, float s2, float e1, float e2) {
   const float t = e1 - s2, m = std::sqrt(t * t + e2 * e2), a = std::sqrt((m + t) * 0.5f);
-  const float c2 = c * c, mc2 = m * c2, s4 = s2 * s2, cs2 = 2 * c * s2, ac = 2 * a * c, u = s4 + mc2, v = a * cs2;
+  const float c2 = c * c, mc2 = m * c2, s4 = s2 * s2, cs2 = 2 * c * s2, ac = 2 * a * c,
+              u = s4 + mc2, v = a * cs2;
   const float y = (m + c2 - ac) / ((m + c2 + ac) * (u + v));
   return {y * u, y * v, y * (s4 - mc2), y * (e2 / (2 * a)) * cs2};
 }
 
-__attribute__((noinline)) void shadeOneBand(const Hemisphere& h, const float* weight, V r, float sigma, float e1, float e2,
-                                            bool polarized, float* out) {
+__attribute__((noinline)) void shadeOneBand(const Hemisphere& h, const float* weight, V r,
+                                            float sigma, float e1, float e2, bool polarized,
+                                            float* out) {
   alignas(64) float s0[most], s1[most], s2[most];
   const float precision = 1 / (2 * sigma * sigma), norm = 1 / (8 * pi * sigma * sigma);
   for (int i = 0; i < h.count; ++i) {
@@ -96,8 +108,9 @@ __attribute__((noinline)) void shadeOneBand(const Hemisphere& h, const float* we
   out[1] += b, out[2] += c;
 }
 
-__attribute__((noinline)) void addBands(const Facet& g, float w, std::size_t n, const float* __restrict e1,
-                                        const float* __restrict e2, bool polarized, float* __restrict out) {
+__attribute__((noinline)) void addBands(const Facet& g, float w, std::size_t n,
+                                        const float* __restrict e1, const float* __restrict e2,
+                                        bool polarized, float* __restrict out) {
   const float f0 = g.factor * w, c = f0 * g.cos2r, s = f0 * g.sin2r;
   if (polarized)
     for (std::size_t j = 0; j < n; ++j) {
@@ -115,10 +128,12 @@ struct Ray16 {
   void fill(const Hemisphere& h, int first, const Frame& f, V o) {
     for (int k = 0; k < 16; ++k) {
       const float x = h.x[first + k], y = h.y[first + k], z = h.z[first + k];
-      q.ray.dir_x[k] = f.x.x * x + f.y.x * y + f.z.x * z, q.ray.dir_y[k] = f.x.y * x + f.y.y * y + f.z.y * z;
+      q.ray.dir_x[k] = f.x.x * x + f.y.x * y + f.z.x * z,
+      q.ray.dir_y[k] = f.x.y * x + f.y.y * y + f.z.y * z;
       q.ray.dir_z[k] = f.x.z * x + f.y.z * y + f.z.z * z;
       q.ray.org_x[k] = o.x, q.ray.org_y[k] = o.y, q.ray.org_z[k] = o.z;
-      q.ray.tnear[k] = 0, q.ray.tfar[k] = 1e30f, q.ray.time[k] = 0, q.ray.mask[k] = ~0u, q.ray.flags[k] = 0;
+      q.ray.tnear[k] = 0, q.ray.tfar[k] = 1e30f, q.ray.time[k] = 0, q.ray.mask[k] = ~0u,
+      q.ray.flags[k] = 0;
       q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
   }
@@ -132,12 +147,17 @@ struct Hit {
 class Renderer {
  public:
   Renderer(const Scene& scene, int rays1, int rays2, bool polarized)
-      : s_(scene), n_(scene.e1.size()), first_(std::max(1, rays1 - 1)), second_(std::max(1, rays2 - 1)), rays2_(rays2),
+      : s_(scene),
+        n_(scene.e1.size()),
+        first_(std::max(1, rays1 - 1)),
+        second_(std::max(1, rays2 - 1)),
+        rays2_(rays2),
         polarized_(polarized) {
     rtcInitIntersectContext(&context_);
   }
   Hit complete(const Ray16& r, int k) const {
-    const V d{r.q.ray.dir_x[k], r.q.ray.dir_y[k], r.q.ray.dir_z[k]}, o{r.q.ray.org_x[k], r.q.ray.org_y[k], r.q.ray.org_z[k]};
+    const V d{r.q.ray.dir_x[k], r.q.ray.dir_y[k], r.q.ray.dir_z[k]},
+        o{r.q.ray.org_x[k], r.q.ray.org_y[k], r.q.ray.org_z[k]};
     V n = unit({r.q.hit.Ng_x[k], r.q.hit.Ng_y[k], r.q.hit.Ng_z[k]});
     if (dot(n, d) > 0) n = n * -1;
     return {o + d * r.q.ray.tfar[k] + n * 1e-4f, n, s_.triangles[r.q.hit.primID[k]].material};
@@ -159,9 +179,11 @@ class Renderer {
       else
         rtcOccluded16(rays.valid.data(), s_.embree, &context_, &rays.q.ray);
       for (int k = 0; k < 16; ++k) {
-        const bool met = deeper ? rays.q.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID : rays.q.ray.tfar[k] < 0;
+        const bool met =
+            deeper ? rays.q.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID : rays.q.ray.tfar[k] < 0;
         weight[i + k] = met ? 0 : h.weight[i + k];
-        if (met && deeper && h.weight[i + k] > 0) addSurface(rays, k, h, i + k, f, r, m, random, out);
+        if (met && deeper && h.weight[i + k] > 0)
+          addSurface(rays, k, h, i + k, f, r, m, random, out);
       }
     }
     addSky(h, weight, r, m, out);
@@ -169,19 +191,22 @@ class Renderer {
 
  private:
   void addSun(const Hit& hit, const Frame& f, V r, const Material& m, float* out) {
-    const V sun{s_.to_sun[0], s_.to_sun[1], s_.to_sun[2]}, i{dot(sun, f.x), dot(sun, f.y), dot(sun, f.z)};
+    const V sun{s_.to_sun[0], s_.to_sun[1], s_.to_sun[2]},
+        i{dot(sun, f.x), dot(sun, f.y), dot(sun, f.z)};
     if (i.z <= 0) return;
-    RTCRay q{hit.point.x, hit.point.y, hit.point.z, 0, sun.x, sun.y, sun.z, 0, 1e30f, ~0u, 0, 0};
+    RTCRay q{hit.point.x, hit.point.y, hit.point.z, 0,   sun.x, sun.y,
+             sun.z,       0,           1e30f,       ~0u, 0,     0};
     rtcOccluded1(s_.embree, &context_, &q);
     if (q.tfar < 0) return;
     if (m.sigma == 0)
       for (std::size_t j = 0; j < n_; ++j) out[j] += s_.sun * i.z * m.reflectance / pi;
     else
-      addBands(facet(i.x, i.y, i.z, r, 1 / (2 * m.sigma * m.sigma), 1 / (8 * pi * m.sigma * m.sigma)), s_.sun * i.z, n_,
-               s_.e1.data(), s_.e2.data(), polarized_, out);
+      addBands(facet(i.x, i.y, i.z, r, 1 / (2 * m.sigma * m.sigma),
+                     1 / (8 * pi * m.sigma * m.sigma)),
+               s_.sun * i.z, n_, s_.e1.data(), s_.e2.data(), polarized_, out);
   }
-  void addSurface(const Ray16& rays, int k, const Hemisphere& h, int i, const Frame& f, V r, const Material& m,
-                  std::uint32_t random, float* out) {
+  void addSurface(const Ray16& rays, int k, const Hemisphere& h, int i, const Frame& f, V r,
+                  const Material& m, std::uint32_t random, float* out) {
     light_.assign(4 * n_, 0);
     const V d{rays.q.ray.dir_x[k], rays.q.ray.dir_y[k], rays.q.ray.dir_z[k]};
     const Hit other = complete(rays, k);
@@ -191,17 +216,22 @@ class Renderer {
       for (std::size_t j = 0; j < n_; ++j) out[j] += w * m.reflectance / pi * light_[j];
       return;
     }
-    const Facet g = facet(h.x[i], h.y[i], h.z[i], r, 1 / (2 * m.sigma * m.sigma), 1 / (8 * pi * m.sigma * m.sigma));
-    const V s1 = unit(cross(other.normal, d * -1)), s2 = unit(cross(d * -1, f.z)) * -1, p1 = cross(d * -1, s1);
-    const float c = dot(s1, s2), s = dot(p1, s2), tc = c * c - s * s, ts = 2 * c * s, f0 = g.factor * w;
+    const Facet g = facet(h.x[i], h.y[i], h.z[i], r, 1 / (2 * m.sigma * m.sigma),
+                          1 / (8 * pi * m.sigma * m.sigma));
+    const V s1 = unit(cross(other.normal, d * -1)), s2 = unit(cross(d * -1, f.z)) * -1,
+            p1 = cross(d * -1, s1);
+    const float c = dot(s1, s2), s = dot(p1, s2), tc = c * c - s * s, ts = 2 * c * s,
+                f0 = g.factor * w;
     for (std::size_t j = 0; j < n_; ++j) {
       const Four q = fresnel(g.c, g.s2, s_.e1[j], s_.e2[j]);
-      const float *l = &light_[j], t1 = tc * l[n_] + ts * l[2 * n_], t2 = tc * l[2 * n_] - ts * l[n_];
+      const float *l = &light_[j], t1 = tc * l[n_] + ts * l[2 * n_],
+                  t2 = tc * l[2 * n_] - ts * l[n_];
       const float u1 = g.cos2i * t1 + g.sin2i * t2, u2 = g.cos2i * t2 - g.sin2i * t1;
       const float v1 = q.diff * l[0] + q.sum * u1, v2 = q.re * u2 + q.im * l[3 * n_];
       out[j] += f0 * (q.sum * l[0] + q.diff * u1);
       if (!polarized_) continue;
-      out[n_ + j] += f0 * (g.cos2r * v1 + g.sin2r * v2), out[2 * n_ + j] += f0 * (g.cos2r * v2 - g.sin2r * v1);
+      out[n_ + j] += f0 * (g.cos2r * v1 + g.sin2r * v2),
+          out[2 * n_ + j] += f0 * (g.cos2r * v2 - g.sin2r * v1);
       out[3 * n_ + j] += f0 * (q.re * l[3 * n_] - q.im * u2);
     }
   }
@@ -213,11 +243,13 @@ class Renderer {
       return;
     }
     for (int i = 0; i < h.count; ++i) weight[i] *= s_.sky;
-    if (n_ == 1) return shadeOneBand(h, weight, r, m.sigma, s_.e1[0], s_.e2[0], polarized_, out);
+    if (n_ == 1)
+      return shadeOneBand(h, weight, r, m.sigma, s_.e1[0], s_.e2[0], polarized_, out);
     for (int i = 0; i < h.count; ++i)
       if (weight[i] > 0)
-        addBands(facet(h.x[i], h.y[i], h.z[i], r, 1 / (2 * m.sigma * m.sigma), 1 / (8 * pi * m.sigma * m.sigma)), weight[i],
-                 n_, s_.e1.data(), s_.e2.data(), polarized_, out);
+        addBands(facet(h.x[i], h.y[i], h.z[i], r, 1 / (2 * m.sigma * m.sigma),
+                       1 / (8 * pi * m.sigma * m.sigma)),
+                 weight[i], n_, s_.e1.data(), s_.e2.data(), polarized_, out);
   }
 
   const Scene& s_;
@@ -236,11 +268,11 @@ void Scene::build() {
   rtcSetSceneFlags(embree, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* xyz = static_cast<float*>(
-      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
+  auto* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(
+      mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
   for (const auto& v : vertices) xyz = std::copy(v.begin(), v.end(), xyz);
-  auto* abc = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
+  auto* abc = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
   for (const Triangle& t : triangles) *abc++ = t.a, *abc++ = t.b, *abc++ = t.c;
   rtcCommitGeometry(mesh);
   rtcAttachGeometry(embree, mesh);
@@ -253,8 +285,8 @@ Scene::~Scene() {
   if (device) rtcReleaseDevice(device);
 }
 
-void render(const Scene& scene, std::size_t pixels, float height, float width, std::size_t step, int rays1, int rays2,
-            bool polarized, std::vector<float>& out) {
+void render(const Scene& scene, std::size_t pixels, float height, float width, std::size_t step,
+            int rays1, int rays2, bool polarized, std::vector<float>& out) {
   const std::size_t bands = scene.e1.size();
   Renderer renderer(scene, rays1, rays2, polarized);
   RTCIntersectContext context;
@@ -278,7 +310,8 @@ void render(const Scene& scene, std::size_t pixels, float height, float width, s
         const V d{rays.q.ray.dir_x[k], rays.q.ray.dir_y[k], rays.q.ray.dir_z[k]};
         const std::size_t pixel = y / step * pixels + x + k;
         if (rays.q.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
-          renderer.leaving(renderer.complete(rays, int(k)), d * -1, std::uint32_t(pixel) * 747796405u + 2891336453u, 0,
+          renderer.leaving(renderer.complete(rays, int(k)), d * -1,
+                           std::uint32_t(pixel) * 747796405u + 2891336453u, 0,
                            &out[pixel * 4 * bands]);
       }
     }

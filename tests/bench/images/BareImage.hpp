@@ -33,6 +33,6 @@ struct Scene {
 /// Looks down from (0, 0, height) at width x width metres of z = 0; renders the pixels of so many rows from `first`, each
 /// `step` rows apart, into out[pixel][component][band]. rays: at the first surface, and at the second (0: none, 1: sun).
 /// `polarized` false: S0 alone.
-void render(const Scene& scene, std::size_t pixels, float height, float width, std::size_t step, int rays1, int rays2,
-            bool polarized, std::vector<float>& out);
+void render(const Scene& scene, std::size_t pixels, float height, float width, std::size_t step,
+            int rays1, int rays2, bool polarized, std::vector<float>& out);
 }  // namespace bare

@@ -37,7 +37,8 @@ struct Pair {  // one scene, for both
 struct Shape {
   std::vector<CDVector> vertices;
   std::vector<CDTriangle> triangles;
-  void quad(const CDVector& a, const CDVector& b, const CDVector& c, const CDVector& d, std::uint32_t material) {
+  void quad(const CDVector& a, const CDVector& b, const CDVector& c, const CDVector& d,
+            std::uint32_t material) {
     const auto n = static_cast<std::uint32_t>(vertices.size());
     vertices.insert(vertices.end(), {a, b, c, d});
     triangles.push_back({n, n + 1, n + 2, 0, material});
@@ -69,7 +70,8 @@ Shape waves(std::uint32_t cells) {
   for (std::uint32_t j = 0; j <= cells; ++j)
     for (std::uint32_t i = 0; i <= cells; ++i) {
       const double x = -10 + 20.0 * i / cells, y = -10 + 20.0 * j / cells;
-      s.vertices.push_back({x, y, 0.6 * std::sin(2.1 * x) * std::cos(1.7 * y) + 0.15 * std::sin(9 * x + 3 * y)});
+      s.vertices.push_back(
+          {x, y, 0.6 * std::sin(2.1 * x) * std::cos(1.7 * y) + 0.15 * std::sin(9 * x + 3 * y)});
     }
   for (std::uint32_t j = 0; j < cells; ++j)
     for (std::uint32_t i = 0; i < cells; ++i) {
@@ -84,8 +86,10 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
   auto pair = std::make_unique<Pair>();
   std::vector<double> nm, n, k;
   for (std::size_t j = 0; j < bands; ++j) {
-    nm.push_back(400 + double(j)), n.push_back(0.4 + 0.001 * double(j)), k.push_back(2.95 + 0.002 * double(j));
-    pair->bare.e1.push_back(float(n[j] * n[j] - k[j] * k[j])), pair->bare.e2.push_back(float(2 * n[j] * k[j]));
+    nm.push_back(400 + double(j)), n.push_back(0.4 + 0.001 * double(j)),
+        k.push_back(2.95 + 0.002 * double(j));
+    pair->bare.e1.push_back(float(n[j] * n[j] - k[j] * k[j])),
+        pair->bare.e2.push_back(float(2 * n[j] * k[j]));
   }
   const auto grid = pair->world.grid = CDSpectralGrid::make(nm);
   CDMesh mesh;
@@ -103,17 +107,22 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
       model = std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(grid, 0.2));
     else
       model = std::make_shared<BRDFTorranceSparrow>(
-          CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k), CDSpectralVector<double>(grid, rough),
+          CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k),
+          CDSpectralVector<double>(grid, rough),
           CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::none, polarized});
     pair->world.materials.push_back({name, model});
     pair->bare.materials.push_back({float(rough), soil ? 0.2f : 0});
   }
   const CDVector to_sun = CDVector::fromAngles(0.5236, -1.5708);
-  pair->world.sun.emplace(CDSun{to_sun, CDSpectralVector<CDStokesVector>(grid, CDStokesVector(1.0))});
-  pair->world.sky = std::make_shared<CDUniformSky>(CDSpectralVector<CDStokesVector>(grid, CDStokesVector(0.05)));
+  pair->world.sun.emplace(
+      CDSun{to_sun, CDSpectralVector<CDStokesVector>(grid, CDStokesVector(1.0))});
+  pair->world.sky = std::make_shared<CDUniformSky>(
+      CDSpectralVector<CDStokesVector>(grid, CDStokesVector(0.05)));
   pair->tracer = std::make_shared<CDRayTracer>(pair->world.geometry);
-  for (const CDVector& v : pair->world.geometry.vertices()) pair->bare.vertices.push_back({float(v.x), float(v.y), float(v.z)});
-  for (const CDTriangle& t : pair->world.geometry.triangles()) pair->bare.triangles.push_back({t.a, t.b, t.c, t.material});
+  for (const CDVector& v : pair->world.geometry.vertices())
+    pair->bare.vertices.push_back({float(v.x), float(v.y), float(v.z)});
+  for (const CDTriangle& t : pair->world.geometry.triangles())
+    pair->bare.triangles.push_back({t.a, t.b, t.c, t.material});
   pair->bare.sky = 0.05f, pair->bare.sun = 1;
   pair->bare.to_sun = {float(to_sun.x), float(to_sun.y), float(to_sun.z)};
   pair->bare.build();
@@ -121,7 +130,8 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
 }
 
 /// Every step-th row, in strips of sixteen pixels as a tile of the renderer has them.
-double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size_t bands, std::vector<double>& out) {
+double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size_t bands,
+                     std::vector<double>& out) {
   std::vector<CDRadiometry::Ray> rays(pixels);
   std::vector<CDRadiometry::Truth> truth(pixels);
   double sum = 0;
@@ -129,7 +139,8 @@ double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size
     for (std::size_t x = 0; x < pixels; ++x) {
       const double f = width / height / pixels;
       rays[x] = {{0, 0, height},
-                 normalized(CDVector{(double(x) + 0.5 - pixels / 2) * f, (pixels / 2 - double(y) - 0.5) * f, -1}),
+                 normalized(CDVector{(double(x) + 0.5 - pixels / 2) * f,
+                                     (pixels / 2 - double(y) - 0.5) * f, -1}),
                  {1, 0, 0},
                  y * pixels + x,
                  0,
@@ -144,10 +155,15 @@ double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size
 /// A model without a fast way for many directions: what the renderer would be without gather().
 class OneByOne : public CDBRDFModel {
  public:
-  explicit OneByOne(std::shared_ptr<const CDBRDFModel> model) : CDBRDFModel(model->grid()), model_(std::move(model)) {}
+  explicit OneByOne(std::shared_ptr<const CDBRDFModel> model)
+      : CDBRDFModel(model->grid()), model_(std::move(model)) {}
   std::string_view name() const override { return model_->name(); }
-  void evaluate(const CDBRDFGeometry& g, CDSpectralVector<CDMuellerMatrix>& out) const override { model_->evaluate(g, out); }
-  void scatter(const CDBRDFGeometry& g, double weight, const CDSpectralVector<CDStokesVector>& in,
+  void evaluate(const CDBRDFGeometry& g,
+                CDSpectralVector<CDMuellerMatrix>& out) const override {
+    model_->evaluate(g, out);
+  }
+  void scatter(const CDBRDFGeometry& g, double weight,
+               const CDSpectralVector<CDStokesVector>& in,
                CDSpectralVector<CDStokesVector>& sum) const override {
     model_->scatter(g, weight, in, sum);
   }
@@ -163,7 +179,8 @@ struct Case {
   std::vector<int> rays;
   std::size_t step;  // one row in so many is rendered
   bool polarized = true, one_by_one = false;
-  bool clear_sky = false;  // a Rayleigh sky, which the bare loops do not know: they render the uniform one
+  bool clear_sky =
+      false;  // a Rayleigh sky, which the bare loops do not know: they render the uniform one
 };
 
 void measure(const Case& c) {
@@ -171,11 +188,14 @@ void measure(const Case& c) {
   if (c.one_by_one)
     for (CDMaterial& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
   if (c.clear_sky) {
-    const CDSun sun{pair->world.sun->to_sun, CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0))};
-    const auto sky = std::make_shared<CDRayleighSky>(sun, CDRayleighSky::clearAir(pair->world.grid, 0.3));
+    const CDSun sun{pair->world.sun->to_sun,
+                    CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0))};
+    const auto sky =
+        std::make_shared<CDRayleighSky>(sun, CDRayleighSky::clearAir(pair->world.grid, 0.3));
     pair->world.sky = sky, pair->world.sun = sky->sunAtGround();
   }
-  const CDRadiometry radiometry(pair->world, pair->tracer, {.sampling = CDSampling::gridRotated, .rays = c.rays});
+  const CDRadiometry radiometry(pair->world, pair->tracer,
+                                {.sampling = CDSampling::gridRotated, .rays = c.rays});
   std::vector<double> out(pixels * 4 * c.bands);
   std::vector<float> bare_out(pixels * (pixels / c.step) * 4 * c.bands);
   std::vector<double> product, bare;
@@ -184,25 +204,28 @@ void measure(const Case& c) {
     const double begin = processorSeconds();
     sum = renderProduct(radiometry, c.step, c.bands, out);
     const double middle = processorSeconds();
-    bare::render(pair->bare, pixels, float(height), float(width), c.step, c.rays[0], c.rays.size() > 1 ? c.rays[1] : 0,
-                 c.polarized, bare_out);
+    bare::render(pair->bare, pixels, float(height), float(width), c.step, c.rays[0],
+                 c.rays.size() > 1 ? c.rays[1] : 0, c.polarized, bare_out);
     bare.push_back(processorSeconds() - middle), product.push_back(middle - begin);
   }
-  for (std::size_t p = 0; p < pixels * (pixels / c.step); ++p) bare_sum += double(bare_out[p * 4 * c.bands]);
+  for (std::size_t p = 0; p < pixels * (pixels / c.step); ++p)
+    bare_sum += double(bare_out[p * 4 * c.bands]);
   const auto median = [](std::vector<double> t) {
     std::nth_element(t.begin(), t.begin() + long(t.size() / 2), t.end());
     return t[t.size() / 2];
   };
-  const double scale = 1e3 * double(c.step), a = median(product) * scale, b = median(bare) * scale;
-  const std::string difference = c.clear_sky ? "another sky" : fmt::format("{:+.2f} %", 100 * (sum / bare_sum - 1));
+  const double scale = 1e3 * double(c.step), a = median(product) * scale,
+               b = median(bare) * scale;
+  const std::string difference =
+      c.clear_sky ? "another sky" : fmt::format("{:+.2f} %", 100 * (sum / bare_sum - 1));
   fmt::print("{:<48} {:>9.0f} {:>9.0f} {:>7.2f}   {}\n", c.name, a, b, a / b, difference);
 }
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
-  fmt::print("{:<48} {:>9} {:>9} {:>7}   {}\n", "256 x 256 pixels, ms of one thread", "malus", "bare", "ratio",
-             "difference of mean S0");
+  fmt::print("{:<48} {:>9} {:>9} {:>7}   {}\n", "256 x 256 pixels, ms of one thread", "malus",
+             "bare", "ratio", "difference of mean S0");
   const Shape bar = chunkyBar();
   const auto run = [&](Case c) {
     if (only.empty() || c.name.find(only) != std::string::npos) measure(c);
