@@ -7,21 +7,13 @@ of(g, w) = abs(column('grit') - g) < 1 && abs(column('wavelength_nm') - w) < 1 ?
 set multiplot
 set xrange [0:80]; set xtics 20
 set lmargin 10; set rmargin 2; set bmargin 4; set tmargin 3
-<<<<<<< HEAD
 set key top right samplen 2 opaque
-=======
->>>>>>> R3
 do for [row=0:1] {
   grit = row == 0 ? 60 : 150
   do for [col=0:1] {
     nm = col == 0 ? 450 : 650
     set origin 0.5*col, 0.5*(1-row); set size 0.5, 0.5
-<<<<<<< HEAD
     set yrange [0:(row == 0 ? (col == 0 ? 2.5 : 4.5) : (col == 0 ? 5 : 9))]
-=======
-    set yrange [0:(row == 0 ? (col == 0 ? 2 : 3.5) : (col == 0 ? 4 : 7))]
-    if (row == 0 && col == 0) { set key top right samplen 2 } else { unset key }
->>>>>>> R3
     set title sprintf('%d grit, %d nm', grit, nm)
     set xlabel 'view zenith [deg]'
     set ylabel 'f_{00} [sr^{-1}]'
