@@ -138,9 +138,10 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
   const std::string dry = "render there/s.json --dry-run --out a";
   const Outcome missing = malusIn(scratch.path, dry);
   EXPECT_EQ(missing.code, 2);
-  EXPECT_NE(
-      missing.err.find("materials.copper-010.file = there/nef.csv: cannot be opened; give "),
-      std::string::npos)
+  EXPECT_TRUE(missing.err.starts_with("there/s.json:")) << missing.err;
+  EXPECT_NE(missing.err.find("materials.copper-010.file = \"nef.csv\": is no file there; "
+                             "name a file; relative paths begin in there"),
+            std::string::npos)
       << missing.err;
   put(scratch / "there/nef.csv", table);
   EXPECT_EQ(malusIn(scratch.path, dry).code, 0);

@@ -24,8 +24,9 @@ TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
     EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{}) << id;
     for (const char* question : {"energy", "reciprocity", "realizable"})
       EXPECT_TRUE(named(item, CDVerdict::reproduced).contains(question)) << id;
-    EXPECT_EQ(item.pictures().size(), 1u);
-    EXPECT_EQ(item.tables().size(), 3u);
+    const std::size_t maps = id == "X.torrance-sparrow" ? 1 : 0;  // of all sixteen elements
+    EXPECT_EQ(item.pictures().size(), 1 + maps) << id;
+    EXPECT_EQ(item.tables().size(), 3 + maps) << id;
     EXPECT_GT(std::stod(valuesOf(item).at("dhr")),
               0.01);  // negative control: something is reflected
   }
