@@ -4,7 +4,7 @@ load style
 set multiplot
 set lmargin at screen 0.08; set rmargin at screen 0.50
 set tmargin at screen 0.9; set bmargin at screen 0.2
-set title 'S_1 / S_0 in the sun''s meridian' offset 0,-0.5
+set title 'S_1 / S_0  in the sun''s meridian' offset 0,-0.5
 set xrange [-90:90]; set xtics -90,30,90; set yrange [-0.2:1]; set ytics -0.2,0.2,1
 set xlabel 'zenith angle [deg]; the sun at 80'
 set arrow 1 from -90,0 to 90,0 nohead ls 12
@@ -21,8 +21,8 @@ set xlabel 'optical depth of the haze'; set ylabel 'distance [deg]'
 set label 1 'Arago, from the antisolar point' at 0.59,37 right
 set label 2 'Babinet, from the sun' at 0.59,20.5 right
 set key bottom right
-plot 'points.csv' using 'haze':'arago_deg' with lines lt 1 dt 1 title 'spheres', \
-     '' using 'haze':'spheroids_arago_deg' with lines lt 1 dt 2 title 'spheroids', \
-     '' using 'haze':'babinet_deg' with lines lt 2 dt 1, \
-     '' using 'haze':'spheroids_babinet_deg' with lines lt 2 dt 2
+plot 'points.csv' using 'haze':'arago_deg' with lines lt 7 dt 1 title 'spheres', \
+     '' using 'haze':'spheroids_arago_deg' with lines lt 7 dt 2 title 'spheroids', \
+     '' using 'haze':'babinet_deg' with lines lt 4 dt 1, \
+     '' using 'haze':'spheroids_babinet_deg' with lines lt 4 dt 2
 unset multiplot
