@@ -7,7 +7,8 @@ set yrange [0.0005:0.5]
 set format y '10^{%T}'
 set xlabel 'steps of each polar angle'
 set ylabel 'relative error (rms)'
-set key below center spacing 1.1 Left reverse width 1
+set bmargin 7.5
+set key at screen 0.5,0.02 center bottom maxrows 2 spacing 1.1 Left reverse samplen 2
 plot 'error.csv' using 'steps':'half_01' with linespoints linetype 1 dashtype 1 title 'σ = 0.1, half-way angles', \
      'error.csv' using 'steps':'plain_01' with linespoints linetype 1 dashtype 2 title 'σ = 0.1, plain angles', \
      'error.csv' using 'steps':'half_03' with linespoints linetype 2 dashtype 1 title 'σ = 0.3, half-way angles', \

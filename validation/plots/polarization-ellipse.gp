@@ -10,6 +10,7 @@ stats 'parameters.csv' using 'psi_deg' nooutput name 'psi'
 X = ex_max; Y = ey_max; A = a_max; B = b_max
 p = psi_max * pi / 180
 alpha = atan2(Y, X)
+chi = atan2(B, A)
 unset border
 unset tics
 unset grid
@@ -25,15 +26,16 @@ set arrow 3 from -X,-Y to X,Y nohead linecolor rgb '#808080' linewidth 1 dashtyp
 set arrow 4 from 0,0 to A*cos(p),A*sin(p) head filled size screen 0.018,20 linecolor rgb '#d55e00' linewidth 2
 set arrow 5 from 0,0 to -B*sin(p),B*cos(p) head filled size screen 0.018,20 linecolor rgb '#009e73' linewidth 2
 set arrow 6 from -B*sin(p),B*cos(p) to A*cos(p),A*sin(p) nohead linecolor rgb '#cc79a7' linewidth 1.2 dashtype (6,4)
-set label 3 'a' at 0.48*A*cos(p)-0.08*sin(p),0.48*A*sin(p)+0.08*cos(p) center textcolor rgb '#d55e00'
+set label 3 'a' at 0.3*A*cos(p)-0.09*sin(p),0.3*A*sin(p)+0.09*cos(p) center textcolor rgb '#d55e00'
 set label 4 'b' at -0.6*B*sin(p)-0.08,0.6*B*cos(p)-0.02 center textcolor rgb '#009e73'
 set label 5 'ψ' at 0.49*cos(p/2),0.49*sin(p/2) center textcolor rgb '#d55e00'
 set label 6 'α' at 0.69*cos(0.45*alpha),0.69*sin(0.45*alpha)-0.01 center textcolor rgb '#808080'
-set label 7 'χ' at 0.76*A*cos(p)-0.05*sin(p),0.76*A*sin(p)+0.05*cos(p) center textcolor rgb '#cc79a7'
+set label 7 'χ' at A*cos(p)-0.53*cos(p-0.66*chi),A*sin(p)-0.53*sin(p-0.66*chi) center textcolor rgb '#cc79a7'
 set label 8 '{/sans-serif:Italic E}_{0x}' at X+0.02,-0.09 left
 set label 9 '{/sans-serif:Italic E}_{0y}' at 0.03,Y+0.08 left
 set parametric
 set trange [0:1]
 plot 'tip.csv' using 'Ex':'Ey' with lines linetype 1 linewidth 2.5, \
      0.40*cos(t*p),0.40*sin(t*p) with lines linecolor rgb '#d55e00' linewidth 1 dashtype solid, \
-     0.62*cos(t*alpha),0.62*sin(t*alpha) with lines linecolor rgb '#808080' linewidth 1 dashtype solid
+     0.62*cos(t*alpha),0.62*sin(t*alpha) with lines linecolor rgb '#808080' linewidth 1 dashtype solid, \
+     A*cos(p)-0.44*cos(p-t*chi),A*sin(p)-0.44*sin(p-t*chi) with lines linecolor rgb '#cc79a7' linewidth 1 dashtype solid
