@@ -185,8 +185,8 @@ TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
 
 TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
   const Copy copy;
-  replaceIn(copy / "validation" / "verdicts.csv", "T3.1,S1.positive,reproduced",
-            "T3.1,S1.positive,differs");
+  replaceIn(copy / "validation" / "claims.csv", "T3.1,S1.positive,thesis,choice,reproduced",
+            "T3.1,S1.positive,thesis,choice,differs");
   const Outcome outcome = copy.run("reproduce T3.1 --out out");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("CHANGED T3.1 S1.positive: committed differs, now reproduced\n"),
@@ -195,8 +195,7 @@ TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
   EXPECT_EQ(copy.run("reproduce F3.9 --out out").code,
             0);  // a partial run looks only at its own items
   EXPECT_EQ(copy.run("reproduce T3.1 --accept --out out").code, 0);
-  EXPECT_EQ(contents(copy / "validation" / "verdicts.csv"),
-            contents(source_data / "verdicts.csv"));
+  EXPECT_EQ(contents(copy / "validation" / "claims.csv"), contents(source_data / "claims.csv"));
 }
 
 // First the checksum notices; then the corrupted number is sealed, and the verdict notices.

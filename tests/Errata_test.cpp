@@ -15,7 +15,7 @@ using namespace malus;
 namespace {
 /// "item/claim" of every erratum in the committed verdicts.
 std::set<std::string> committedErrata() {
-  const CDTable table = CDTable::read("validation/verdicts.csv");
+  const CDTable table = CDTable::read("validation/claims.csv");
   std::set<std::string> errata;
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (table.cell(row, "verdict") == "erratum")

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "Scratch.hpp"
@@ -14,22 +15,34 @@ using namespace malus;
 namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-CDItem freshItem() { return CDItem("T0", "nowhere", "nowhere"); }
+const std::string columns =
+    "item,claim,kind,source,verdict,repeats,fit,limit,sentence,quantity,criterion\n";
+
+/// An item T0 with rows for the claims a to f, all of one kind.
+CDItem freshItem(const std::string& kind = "thesis") {
+  const Scratch scratch;
+  std::string rows = columns;
+  for (const char name : std::string("abcdef"))
+    rows += std::string("T0,") + name + "," + kind + ",choice,,,,10 .. 20,sentence " + name +
+            ",q," + (name == 'c' ? "within 1e-12: rounding" : "a reason") + "\n";
+  put(scratch / "claims.csv", rows);
+  return CDItem("T0", "nowhere", scratch.path);
+}
 
 CDVerdict last(const CDItem& item) { return item.claims().back().verdict; }
 
 // what the items of a small inventory do; each states claims of its own kind
 void everyVerdict(CDItem& item) {
-  item.printed("good", "rounds", "1.25", 1.2512);
-  item.erratum("misprint", "a digit is wrong", "104.07", "102.07", 102.068, "its error column");
-  item.statement("bad", "does not hold", false, "seen");
-  item.notTestable("lost", "measured points", "the scan");
+  item.printed("good", "1.25", 1.2512);
+  item.erratum("misprint", "104.07", "102.07", 102.068, "its error column");
+  item.statement("bad", false, "seen");
+  item.notTestable("lost");
   item.table("curve", {"x_deg", "y"}).row({0, 1.0}).row({10, 2.0});
   item.picture("curve", "A curve");
   item.value("answer", "42");
 }
 void throwing(CDItem& item) {
-  item.statement("first", "holds", true, "seen");
+  item.statement("first", true, "seen");
   item.table("half", {"x"}).row({1});
   throw std::runtime_error("the second half is missing");
 }
@@ -38,15 +51,29 @@ void silent(CDItem&) {}
 const std::vector<CDRegisteredItem> functions{
     {"T1", everyVerdict}, {"T2", throwing}, {"T3", silent}};
 
+/// "T1,good,reproduced" and the like as rows of the table of claims.
+std::string asRows(const std::string& verdicts) {
+  std::istringstream lines(verdicts);
+  std::string rows = columns;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t verdict = line.rfind(',');
+    rows += line.substr(0, verdict) + ",thesis,choice" + line.substr(verdict) +
+            ",,,,sentence of " + std::to_string(rows.size()) + ",,a reason\n";
+  }
+  return rows;
+}
+
+const std::string all_committed =
+    "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n"
+    "T2,first,reproduced\n";
+
 /// A data directory with an inventory of four items (T4 is not built) and T1's verdicts committed.
 struct Data : Scratch {
-  explicit Data(
-      const std::string& verdicts =
-          "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n") {
+  explicit Data(const std::string& verdicts = all_committed) {
     put(path / "inventory.csv",
         "id,kind,title,place\nT1,table,One,page "
         "1\nT2,table,Two,\nT3,table,Three,\nT4,table,Four,\n");
-    put(path / "verdicts.csv", "item,claim,verdict\n" + verdicts);
+    put(path / "claims.csv", asRows(verdicts));
     put(path / "plots" / "curve.gp",
         "if (term eq 'svg') set terminal svg; else set terminal pngcairo\nset output out\n"
         "set datafile separator ','\nplot 'curve.csv' using 1:2 with lines\n");
@@ -83,40 +110,40 @@ TEST(HarnessIdentity, HalfAUnitOfTheLastPrintedDigitDecides) {
 
 TEST(HarnessIdentity, PrintedAndWithin) {
   CDItem item = freshItem();
-  item.printed("a", "t", "102.2", 102.249);
+  item.printed("a", "102.2", 102.249);
   EXPECT_EQ(last(item), CDVerdict::reproduced);
   EXPECT_EQ(item.claims().back().ours, "102.24900");
   EXPECT_NEAR(item.claims().back().residual, 0.049, 1e-12);  // rounding
-  item.printed("b", "t", "102.2", 102.251);
+  item.printed("b", "102.2", 102.251);
   EXPECT_EQ(last(item), CDVerdict::differs);
-  item.within("c", "t", 1, 1 + 1e-13, 1e-12, "rounding");
+  item.within("c", 1, 1 + 1e-13, 1e-12);
   EXPECT_EQ(last(item), CDVerdict::reproduced);
-  item.within("d", "t", 1, 1 + 1e-11, 1e-12, "rounding");
+  item.within("d", 1, 1 + 1e-11, 1e-12);
   EXPECT_EQ(last(item), CDVerdict::differs);
-  item.within("e", "t", 1, not_a_number, 1e9, "NaN is near nothing");
+  item.within("e", 1, not_a_number, 1e9) /* NaN is near nothing */;
   EXPECT_EQ(last(item), CDVerdict::differs);
 }
 
 TEST(HarnessIdentity, AnErratumNeedsBothHalves) {
   CDItem item = freshItem();
-  item.erratum("a", "t", "104.07", "102.07", 102.07, "e");
+  item.erratum("a", "104.07", "102.07", 102.07, "e");
   EXPECT_EQ(last(item), CDVerdict::erratum);
-  item.erratum("b", "t", "104.07", "102.07", 104.07, "the print is met after all");
+  item.erratum("b", "104.07", "102.07", 104.07, "the print is met after all");
   EXPECT_EQ(last(item), CDVerdict::reproduced);
-  item.erratum("c", "t", "104.07", "102.07", 103.0, "neither is met");
+  item.erratum("c", "104.07", "102.07", 103.0, "neither is met");
   EXPECT_EQ(last(item), CDVerdict::differs);
-  item.erratumStatement("d", "t", true, true, "e");
+  item.erratumStatement("d", true, true, "e");
   EXPECT_EQ(last(item), CDVerdict::erratum);
-  item.erratumStatement("e", "t", false, true, "e");
+  item.erratumStatement("e", false, true, "e");
   EXPECT_EQ(last(item), CDVerdict::reproduced);
-  item.erratumStatement("f", "t", true, false, "e");
+  item.erratumStatement("f", true, false, "e");
   EXPECT_EQ(last(item), CDVerdict::differs);
 }
 
 TEST(HarnessIdentity, AClaimIsStatedOnce) {
   CDItem item = freshItem();
-  item.statement("a", "t", true, "e");
-  EXPECT_THROW(item.statement("a", "t", true, "e"), CDInvariantError);
+  item.statement("a", true, "e");
+  EXPECT_THROW(item.statement("a", true, "e"), CDInvariantError);
 }
 
 TEST(HarnessInvariant, ARunLeavesDataPicturesAndNoComplaint) {
@@ -162,30 +189,65 @@ TEST(HarnessIdentity, AnUnknownIdIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(data / "out"));
 }
 
+TEST(HarnessIdentity, AClaimWithoutARowIsRefusedBeforeItsNumberIsSeen) {
+  CDItem item = freshItem();
+  try {
+    item.statement("unheard-of", true, "e");
+    FAIL() << "not refused";
+  } catch (const CDInvariantError& error) {
+    EXPECT_NE(std::string(error.what()).find("T0/unheard-of has no row"), std::string::npos);
+  }
+  EXPECT_THROW(item.measured("unheard-of", 15), CDInvariantError);
+}
+
+TEST(HarnessIdentity, TheToleranceOfTheCodeIsThatOfTheTable) {
+  CDItem item = freshItem();
+  EXPECT_THROW(item.within("c", 1, 1, 1e-11), CDInvariantError);
+  EXPECT_NO_THROW(item.within("d", 1, 1, 1e-11));  // its criterion is in other words
+}
+
+TEST(HarnessIdentity, ALimitOfTheTableJudges) {
+  CDItem item = freshItem();
+  item.measured("a", 10);
+  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  item.measured("b", 20.000001);
+  EXPECT_EQ(last(item), CDVerdict::differs);
+  item.measured("d", not_a_number);
+  EXPECT_EQ(last(item), CDVerdict::differs);
+}
+
+TEST(HarnessIdentity, InputsAndPropertiesOfTheProgramHaveNoVerdict) {
+  CDItem input = freshItem("input"), implementation = freshItem("implementation");
+  input.statement("a", true, "e");
+  EXPECT_EQ(last(input), CDVerdict::input);
+  implementation.statement("a", true, "e");
+  EXPECT_EQ(last(implementation), CDVerdict::implementation);
+  implementation.statement("b", false, "e");
+  EXPECT_EQ(last(implementation), CDVerdict::differs);
+}
+
 TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNoticed) {
-  const auto changes = [](const std::string& verdicts) {
+  const auto changes = [](const std::string& from, const std::string& to) {
+    std::string verdicts = all_committed;
+    verdicts.replace(verdicts.find(from), from.size(), to);
     return Data(verdicts).run({"T1"}).changes;
   };
-  const auto altered =
-      changes("T1,good,differs\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not testable\n");
+  const auto altered = changes("good,reproduced", "good,differs");
   ASSERT_EQ(altered.size(), 1u);
   EXPECT_EQ(altered[0].claim, "good");
   EXPECT_EQ(altered[0].committed, "differs");
   EXPECT_EQ(altered[0].now, "reproduced");
-  const auto missing = changes("T1,good,reproduced\nT1,bad,differs\nT1,lost,not testable\n");
-  ASSERT_EQ(missing.size(), 1u);
-  EXPECT_EQ(missing[0].committed, "");
-  const auto invented = changes(
-      "T1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,not "
-      "testable\nT1,new,erratum\n");
+  const auto unseen = changes("misprint,erratum", "misprint,");
+  ASSERT_EQ(unseen.size(), 1u);
+  EXPECT_EQ(unseen[0].committed, "");
+  const auto invented = changes("T1,lost", "T1,new,erratum\nT1,lost");
   ASSERT_EQ(invented.size(), 1u);
   EXPECT_EQ(invented[0].now, "");
+  EXPECT_EQ(changes("T1,lost", "T1,new,\nT1,lost").size(), 1u);  // nobody looked, nothing ran
 }
 
 TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {
-  const Data data(
-      "T9,gone,reproduced\nT1,good,reproduced\nT1,misprint,erratum\nT1,bad,differs\nT1,lost,"
-      "not testable\n");
+  const Data data("T9,gone,reproduced\n" + all_committed);
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
   const CDRun whole = data.run({});
   ASSERT_EQ(whole.changes.size(), 1u);
@@ -193,14 +255,16 @@ TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {
 }
 
 TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
-  const Data data("T1,good,differs\nT2,first,reproduced\n");
-  const CDRun run = data.run({"T1", "T2"});
-  acceptVerdicts(run, readInventory(data.path), data.path);
-  const auto rows = readVerdicts(data.path);
-  ASSERT_EQ(rows.size(), 5u);
-  EXPECT_EQ(rows[0], (CDVerdictRow{"T1", "good", "reproduced"}));
-  EXPECT_EQ(rows[4],
-            (CDVerdictRow{"T2", "first", "reproduced"}));  // it failed, and keeps what it had
+  std::string verdicts = all_committed;
+  verdicts.replace(verdicts.find("good,reproduced"), 15, "good,differs");
+  const Data data(verdicts);
+  acceptVerdicts(data.run({"T1", "T2"}), data.path);
+  const CDClaimTable rows = CDClaimTable::read(data.path);
+  ASSERT_EQ(rows.rows().size(), 5u);
+  EXPECT_EQ(rows.find("T1", "good")->verdict, "reproduced");
+  EXPECT_EQ(rows.find("T1", "good")->criterion, "a reason");
+  EXPECT_EQ(rows.find("T2", "first")->verdict,
+            "reproduced");  // it failed, and keeps what it had
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
 }
 

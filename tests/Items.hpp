@@ -20,17 +20,25 @@ inline malus::CDItem ran(const std::string& id, malus::CDItemFunction function,
   return item;
 }
 
-/// Names of the claims with this verdict.
+/// The verdict, where a label says only that the claim holds.
+inline malus::CDVerdict heldOr(malus::CDVerdict verdict) {
+  return verdict == malus::CDVerdict::input || verdict == malus::CDVerdict::implementation
+             ? malus::CDVerdict::reproduced
+             : verdict;
+}
+
+/// Names of the claims with this verdict; inputs and properties of the program hold if reproduced.
 inline std::set<std::string> named(const malus::CDItem& item, malus::CDVerdict verdict) {
   std::set<std::string> names;
   for (const malus::CDClaim& claim : item.claims())
-    if (claim.verdict == verdict) names.insert(claim.name);
+    if (heldOr(claim.verdict) == verdict) names.insert(claim.name);
   return names;
 }
 
 inline std::map<std::string, malus::CDVerdict> verdictsOf(const malus::CDItem& item) {
   std::map<std::string, malus::CDVerdict> verdicts;
-  for (const malus::CDClaim& claim : item.claims()) verdicts[claim.name] = claim.verdict;
+  for (const malus::CDClaim& claim : item.claims())
+    verdicts[claim.name] = heldOr(claim.verdict);
   return verdicts;
 }
 
@@ -49,6 +57,7 @@ struct Corrupted : Scratch {
       std::filesystem::create_directory_symlink(std::filesystem::absolute(folder),
                                                 path / folder);
     std::filesystem::create_directory(data);
+    std::filesystem::copy("validation/claims.csv", data / "claims.csv");
     std::filesystem::copy("validation/printed", data / "printed",
                           std::filesystem::copy_options::recursive);
     std::string text = contents(data / "printed" / file);

@@ -17,10 +17,12 @@ CDRun sampleRun() {
                    {"curve"},
                    {{"a", "1.5"}},
                    ""};
-  one.claims = {{"r", "a < b", "1.25", "1.2512", "half a unit", CDVerdict::reproduced, 0.0012},
-                {"e", "misprint", "104.07", "102.07", "digits", CDVerdict::erratum, -2.0},
-                {"d", "sentence", "", "seen \"so\"", "", CDVerdict::differs},
-                {"n", "lost", "", "", "the scan", CDVerdict::notTestable}};
+  one.claims = {{"r", "1.25", "1.2512", "half a unit", CDVerdict::reproduced, 0.0012},
+                {"e", "104.07", "102.07", "digits", CDVerdict::erratum, -2.0},
+                {"d", "", "seen \"so\"", "", CDVerdict::differs},
+                {"n", "", "", "the scan", CDVerdict::notTestable}};
+  one.claims[0].row.sentence = "a < b";
+  one.claims[2].row.sentence = "sentence";
   CDItemResult two{{"T2", "table", "Two", ""}, {}, {}, {}, {}, "it broke"};
   CDRun run;
   run.items = {one, two};
@@ -39,15 +41,45 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
 }  // namespace
 
 TEST(ReportIdentity, TheSummaryTellsCountsFailuresAndChanges) {
-  EXPECT_EQ(summaryText(sampleRun(), "out"),
-            "r reproduced   e erratum   d differs   n not testable\n"
-            "T1      1 r   1 e   1 d   1 n T2     FAILED\n"
-            "2 items: 1 reproduced, 1 erratum, 1 differs, 1 not testable\n"
-            "differs T1 d: sentence\n"
-            "FAILED T2: it broke\n"
-            "CHANGED T1 r: committed differs, now reproduced\n"
-            "CHANGED T1 x: committed erratum, now gone\n"
-            "look at out/report.html\n");
+  EXPECT_EQ(
+      summaryText(sampleRun(), "out"),
+      "r reproduced   e erratum   d differs   n not testable   i input or implementation\n"
+      "T1      1 r   1 e   1 d   1 n T2     FAILED\n"
+      "2 items\n"
+      "the thesis: 4 sentences and printed numbers: 1 reproduced, 1 erratum, 1 differs, 1 "
+      "not testable\n"
+      "ours:       0 reproduced, 0 erratum, 0 differs, 0 not testable; 0 inputs and 0 "
+      "properties of the program hold\n"
+      "differs T1 d: sentence\n"
+      "FAILED T2: it broke\n"
+      "CHANGED T1 r: committed differs, now reproduced\n"
+      "CHANGED T1 x: committed erratum, now gone\n"
+      "look at out/report.html\n");
+}
+
+// Of eleven claims that are reproduced, one repeats, three are fitted with two unknowns, two are ours, and two have labels.
+TEST(ReportIdentity, RepeatsLabelsAndUnknownsAreNotCounted) {
+  CDRun run = sampleRun();
+  auto& claims = run.items[0].claims;
+  const CDClaim holds = claims[0];
+  claims.assign(11, holds);
+  claims[1].row.repeats = "T1/r";
+  for (const int i : {2, 3, 4})
+    claims[i].row.kind = CDClaimKind::fitted, claims[i].row.fit = "sun",
+    claims[i].row.unknowns = 2;
+  for (const int i : {5, 6}) claims[i].row.kind = CDClaimKind::own;
+  claims[7].row.kind = CDClaimKind::input, claims[7].verdict = CDVerdict::input;
+  claims[8].row.kind = CDClaimKind::implementation,
+  claims[8].verdict = CDVerdict::implementation;
+  const std::string text = summaryText(run, "out");
+  EXPECT_NE(text.find("the thesis: 4 sentences and printed numbers: 4 reproduced, 0 erratum"),
+            std::string::npos)
+      << text;  // three others and one of the fit
+  EXPECT_NE(text.find("3 fitted rows count as 1\n"), std::string::npos);
+  EXPECT_NE(text.find("1 rows repeat others"), std::string::npos);
+  EXPECT_NE(text.find("ours:       2 reproduced"), std::string::npos);
+  EXPECT_NE(text.find("1 inputs and 1 properties"), std::string::npos);
+  EXPECT_NE(text.find("T1      8 r   2 i"), std::string::npos);
 }
 
 TEST(ReportIdentity, OneScreenHoldsManyItemsAndManyChanges) {
