@@ -45,8 +45,9 @@ CDWorld worldOf(const std::vector<Plate>& plates, double sky = 0) {
   return world;
 }
 
+// A point: what one direction sends. The disk is in SunDisk_test.cpp.
 void setSun(CDWorld& world, const CDVector& to_sun, const CDStokesVector& irradiance) {
-  world.sun.emplace(CDSun{normalized(to_sun), light(irradiance)});
+  world.sun.emplace(CDSun{normalized(to_sun), light(irradiance), 0});
 }
 
 std::shared_ptr<const CDBRDFModel> copper(double sigma = 0.2) {

@@ -120,14 +120,14 @@ TEST(CDRayTracerInvariant, BundlesAnswerAsSingleRaysDo) {
   }
 }
 
-TEST(CDRayTracerInvariant, ParallelBundlesAnswerAsSingleRaysDo) {
+TEST(CDRayTracerInvariant, SunBundlesAnswerAsSingleRaysDo) {
   const CDSceneGeometry scene = pyramids({}, true);
   const CDRayTracer tracer(scene);
   CDRandom random(3);
   int met = 0, missed = 0;
   for (int i = 0; i < 2000; ++i) {
-    CDParallelBundle rays;
-    rays.direction = randomDirection(random);
+    CDSunBundle rays;
+    for (CDVector& direction : rays.direction) direction = randomDirection(random);
     rays.active = i % 3 == 0 ? 0xffffu : static_cast<std::uint32_t>(random() & 0xffff);
     for (CDVector& origin : rays.origin)
       origin = {4 * random.uniform() - 2, 4 * random.uniform() - 2, 2 * random.uniform() - 0.5};
@@ -135,7 +135,7 @@ TEST(CDRayTracerInvariant, ParallelBundlesAnswerAsSingleRaysDo) {
     EXPECT_EQ(blocked & ~rays.active, 0u);
     for (int k = 0; k < 16; ++k) {
       if (!(rays.active >> k & 1)) continue;
-      EXPECT_EQ(tracer.occluded(rays.origin[k], rays.direction), bool(blocked >> k & 1));
+      EXPECT_EQ(tracer.occluded(rays.origin[k], rays.direction[k]), bool(blocked >> k & 1));
       ++(blocked >> k & 1 ? met : missed);
     }
   }

@@ -31,7 +31,7 @@ CDWorld smallWorld() {
   world.geometry = std::move(builder).build();
   const CDSpectralVector<double> reflectance(world.grid, 0.5);
   world.materials = {{"soil", std::make_shared<BRDFDiffuse>(reflectance)}};
-  world.sun = CDSun{compassDirection(pi / 3, pi), {world.grid, CDStokesVector(2.0)}};
+  world.sun = CDSun{compassDirection(pi / 3, pi), {world.grid, CDStokesVector(2.0)}, 0};
   world.sky = blackSky(world.grid);
   return world;
 }

@@ -289,7 +289,7 @@ TEST(RadiometryChecksIdentity, PlateIsWhatTheProgramPrints) {
     CDWorld world = worldOf(plate(copper(0.2, CDDiffuseTerm::thesis)));
     const double azimuth = 1, cos_i = std::cos(angles[i][0] * degree);
     world.sun.emplace(
-        CDSun{CDVector::fromAngles(angles[i][0] * degree, azimuth), spectrumOf(1)});
+        CDSun{CDVector::fromAngles(angles[i][0] * degree, azimuth), spectrumOf(1), 0});
     const CDVector viewer =
         CDVector::fromAngles(angles[i][1] * degree, azimuth + angles[i][2] * degree);
     const auto seen = estimate(world, CDRadiometryOptions{.rays = {1}},
