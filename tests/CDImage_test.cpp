@@ -35,8 +35,8 @@ std::vector<float> tileOf(const CDTile& t) {
 }
 const std::vector<CDTile> tiles{{0, 0, 4, 2}, {4, 0, 6, 2}, {0, 2, 6, 4}};
 
-void writeAll(const std::filesystem::path& path) {
-  CDCubeWriter writer(path, header);
+void writeAll(const std::filesystem::path& path, const CDCubeHeader& as = header) {
+  CDCubeWriter writer(path, as);
   for (const CDTile& t : tiles) writer.write(t, tileOf(t));
   writer.finish();
 }
@@ -63,6 +63,81 @@ TEST(CDImageIdentity, ComesBackAsItWasWritten) {
       for (std::size_t c = 0; c < 12; ++c) ASSERT_EQ(cube.at(x, y, c), number(x, y, c));
   EXPECT_EQ(readCube(scratch / "x.img.hdr").data, cube.data);
   EXPECT_EQ(filesBelow(scratch.path), 2u);  // no .part, no journal
+}
+
+namespace {
+CDCubeHeader inOrder(CDInterleave order) {
+  CDCubeHeader made = header;
+  made.interleave = order;
+  return made;
+}
+}  // namespace
+
+TEST(CDImageIdentity, TheOrderOfTheFileIsNotThatOfTheMemory) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  const CDCube cube = readCube(scratch / "x.img");
+  for (const CDInterleave order : {CDInterleave::bil, CDInterleave::bsq}) {
+    const std::string name = std::string(nameOf(order)) + ".img";
+    writeAll(scratch / name, inOrder(order));
+    EXPECT_EQ(readCube(scratch / name).header, inOrder(order));
+    EXPECT_EQ(readCube(scratch / name).data, cube.data);
+    EXPECT_NE(contents(scratch / name), contents(scratch / "x.img"));
+  }
+  EXPECT_EQ(interleaveOf("bsq"), CDInterleave::bsq);
+  EXPECT_FALSE(interleaveOf("BSQ?"));
+}
+
+TEST(CDImageInvariant, ACubeOfAnotherOrderIsResumedToo) {
+  const Scratch scratch;
+  for (const CDInterleave order : {CDInterleave::bil, CDInterleave::bsq}) {
+    const CDCubeHeader as = inOrder(order);
+    writeAll(scratch / "whole.img", as);
+    { CDCubeWriter(scratch / "x.img", as).write(tiles[1], tileOf(tiles[1])); }
+    EXPECT_THROW(CDCubeWriter(scratch / "x.img", header, true), CDInputError);
+    CDCubeWriter again(scratch / "x.img", as, true);
+    EXPECT_TRUE(again.finished(tiles[1]));
+    for (const std::size_t i : {0, 2}) again.write(tiles[i], tileOf(tiles[i]));
+    again.finish();
+    EXPECT_EQ(contents(scratch / "x.img"), contents(scratch / "whole.img"));
+  }
+}
+
+// What a user calls a file must not end a value of the header.
+TEST(CDImageIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
+  const Scratch scratch;
+  CDCubeHeader odd = header;
+  odd.description = "scene a}\nbands = 1\n{b";
+  writeAll(scratch / "x.img", odd);
+  const CDCube cube = readCube(scratch / "x.img");
+  EXPECT_EQ(cube.header.description, "scene a%7D%0Abands = 1%0A%7Bb");
+  EXPECT_EQ(cube.header.channels, header.channels);
+  CDCubeWriter again(scratch / "x.img", odd, true);
+  EXPECT_TRUE(again.finished(tiles[0]));  // the header is known again
+}
+
+TEST(CDImageIdentity, TimePlaceAndIgnoreValueComeBack) {
+  const Scratch scratch;
+  CDCubeHeader full = header;
+  full.acquisition_time = "2001-06-10T17:06:00Z";
+  full.map_info = "Arbitrary, 1, 1, -3, 2, 1, 1, units=Meters";
+  writeAll(scratch / "x.img", full);
+  EXPECT_EQ(readCube(scratch / "x.img").header, full);
+  EXPECT_EQ(header.ignore_value, "nan");
+}
+
+// 400 000 wavelengths, one a line: as long as the list, not as its square, or this test never ends.
+TEST(CDImageIdentity, ALongListMayHaveManyLines) {
+  const Scratch scratch;
+  constexpr std::size_t many = 400000;
+  std::string text =
+      "ENVI\nsamples = 1\nlines = 1\nbands = 400000\ndata type = 4\n"
+      "interleave = bip\nbyte order = 0\nwavelength = {\n";
+  for (std::size_t i = 0; i < many; ++i) text += std::to_string(400 + i) + ",\n";
+  text.replace(text.size() - 2, 2, "}\n");
+  put(scratch / "x.img.hdr", text);
+  put(scratch / "x.img", std::string(many * sizeof(float), '\0'));
+  EXPECT_EQ(readCube(scratch / "x.img").header.wavelength_nm.size(), many);
 }
 
 TEST(CDImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
@@ -132,20 +207,29 @@ TEST(CDImageIdentity, BadCubesAreNamed) {
   EXPECT_NE(spoil("samples = 6", "samples = six").find("samples"), std::string::npos);
   EXPECT_NE(spoil("ENVI", "IVNE").find("not the header of an ENVI cube"), std::string::npos);
   EXPECT_NE(spoil("S0 450, ", "").find("11 names"), std::string::npos);
+  EXPECT_NE(spoil("wavelength = {450, ", "wavelength = {").find("11 wavelengths"),
+            std::string::npos);
+  EXPECT_NE(spoil("fwhm = {20, ", "fwhm = {").find("11 widths"), std::string::npos);
+  EXPECT_NE(spoil("interleave = bip", "interleave = big").find("bip, bil or bsq"),
+            std::string::npos);
 }
 
 // Other people's readers: GDAL and Spectral Python, as Debian ships them.
 TEST(CDImagePublished, GdalReadsNamesWavelengthsAndNumbers) {
   const Scratch scratch;
-  writeAll(scratch / "x.img");
-  EXPECT_EQ(python("import sys\nfrom osgeo import gdal\nd = gdal.Open(sys.argv[1])\n"
-                   "assert (d.RasterXSize, d.RasterYSize, d.RasterCount) == (6, 4, 12)\n"
-                   "b = d.GetRasterBand(12)\n"
-                   "assert b.GetDescription().startswith(\"S3 650.5\"), b.GetDescription()\n"
-                   "assert float(b.GetMetadataItem(\"wavelength\")) == 650.5\n"
-                   "assert b.ReadAsArray()[3, 5] == 350.6875\n",
-                   scratch / "x.img"),
-            0);
+  for (const CDInterleave order : {CDInterleave::bip, CDInterleave::bil, CDInterleave::bsq}) {
+    writeAll(scratch / "x.img", inOrder(order));
+    EXPECT_EQ(python("import sys, math\nfrom osgeo import gdal\nd = gdal.Open(sys.argv[1])\n"
+                     "assert (d.RasterXSize, d.RasterYSize, d.RasterCount) == (6, 4, 12)\n"
+                     "b = d.GetRasterBand(12)\n"
+                     "assert b.GetDescription().startswith(\"S3 650.5\"), b.GetDescription()\n"
+                     "assert float(b.GetMetadataItem(\"wavelength\")) == 650.5\n"
+                     "assert math.isnan(b.GetNoDataValue())\n"
+                     "assert b.ReadAsArray()[3, 5] == 350.6875\n",
+                     scratch / "x.img"),
+              0)
+        << nameOf(order);
+  }
 }
 
 TEST(CDImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
@@ -158,7 +242,10 @@ TEST(CDImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
       "== \"Nanometers\"\n"
       "assert d.metadata[\"band names\"][5] == \"S1 550\"\n"
       "assert d[2, 3, 1] == ";
-  EXPECT_EQ(python(program + "230.0625\n", scratch / "x.img"), 0);
+  for (const CDInterleave order : {CDInterleave::bip, CDInterleave::bil, CDInterleave::bsq}) {
+    writeAll(scratch / "x.img", inOrder(order));
+    EXPECT_EQ(python(program + "230.0625\n", scratch / "x.img"), 0) << nameOf(order);
+  }
   EXPECT_NE(python(program + "230\n", scratch / "x.img"), 0);  // the negative control
 }
 
@@ -177,6 +264,32 @@ TEST(CDImagePublished, SpectralExrHasTheNamesOfItsConvention) {
   std::vector<float> numbers(width * height * 12);
   ASSERT_TRUE(in->read_image(0, 0, 0, 12, OIIO::TypeDesc::FLOAT, numbers.data()));
   EXPECT_EQ(numbers[(1 * width + 2) * 12 + std::size_t(channel)], number(2, 1, 10));
+}
+
+// Named bands, two of them with one centre: an attribute, and a layer for the second.
+TEST(CDImageIdentity, NamesOfBandsAreInTheSpectralPicture) {
+  const Scratch scratch;
+  const auto named = CDSpectralGrid::bands(
+      {CDSpectralLocation(550.0), CDSpectralLocation(550, CDBandResponse::gaussian(200)),
+       CDSpectralLocation(450.0)},
+      {"green", "pan", ""});
+  CDCube cube{stokesHeader(1, 1, *named, "1"), std::vector<float>(12)};
+  EXPECT_EQ(cube.header.channels[4], "S0 pan");
+  EXPECT_EQ(cube.header.channels[8], "S0 450");
+  for (std::size_t i = 0; i < 12; ++i) cube.data[i] = float(i);
+  writeSpectralEXR(cube, scratch / "x.exr");
+  const auto in = OIIO::ImageInput::open((scratch / "x.exr").string());
+  ASSERT_TRUE(in);
+  EXPECT_EQ(in->spec().get_string_attribute("bandNames"), "green, pan, 450");
+  std::vector<float> numbers(12);
+  ASSERT_TRUE(in->read_image(0, 0, 0, 12, OIIO::TypeDesc::FLOAT, numbers.data()));
+  const auto channel = [&](const char* name) {
+    const int at = in->spec().channelindex(name);
+    return at < 0 ? -1 : numbers[std::size_t(at)];
+  };
+  EXPECT_EQ(channel("S1.550,000000nm"), 1);
+  EXPECT_EQ(channel("pan.S1.550,000000nm"), 5);
+  EXPECT_EQ(channel("S1.450,000000nm"), 9);
 }
 
 TEST(QuicklooksIdentity, DrawsEveryQuantityWithItsScale) {
@@ -239,4 +352,39 @@ TEST(QuicklooksIdentity, ScalesMeanWhatTheChapterSays) {
   EXPECT_LT(distance(angle[0], angle[3]), 12);
   EXPECT_GT(distance(angle[0], angle[1]), 200);
   EXPECT_LT(distance(angle[2], {0, 0, 0}), 4);  // no polarisation, no angle
+}
+
+// A black pixel has no degree and no angle: grey, which no scale holds; and no part in the stretch.
+TEST(QuicklooksIdentity, ABlackPixelIsNeitherAFaultNorUnpolarised) {
+  const Scratch scratch;
+  CDCube cube{stokesHeader(3, 1, *CDSpectralGrid::make({550}), "1"),
+              {0, 0, 0, 0, 2, 1, 0, 0.5f, 0, 1, 0, 0}};
+  quicklooks(cube, 0, scratch / "q");
+  for (const char* name : {"q.DoLP.png", "q.DoCP.png", "q.AoLP.png"})
+    EXPECT_EQ(firstRow(scratch / name, 1)[0], (std::array<int, 3>{128, 128, 128})) << name;
+  EXPECT_EQ(firstRow(scratch / "q.DoLP.png", 3)[2][1],
+            255);  // polarised without light: a fault
+  EXPECT_LT(firstRow(scratch / "q.S0.png", 1)[0][0], 4);
+}
+
+TEST(QuicklooksIdentity, AnAbsentComponentHasNoPictureAndFalseColoursNoBar) {
+  const Scratch scratch;
+  // bands in no order: red must be 650 nm all the same
+  const auto three = CDSpectralGrid::bands(
+      {CDSpectralLocation(550.0), CDSpectralLocation(650.0), CDSpectralLocation(450.0)});
+  CDCube cube{bandHeader(2, 1, *three, {"S0", "S1", "S2"}, "1"),
+              {0.1f, 0, 0, 1, 0, 0, 0.1f, 0, 0, 1, 0, 0, 0.1f, 0, 0, 1, 0, 0}};
+  EXPECT_EQ(stokesComponents(cube.header), (std::vector<std::size_t>{0, 1, 2}));
+  const auto made = quicklooks(cube, 1, scratch / "q");
+  EXPECT_EQ(made.size(), 6u);  // S0, S1, S2, DoLP, AoLP, rgb
+  EXPECT_FALSE(std::filesystem::exists(scratch / "q.S3.png"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "q.DoCP.png"));
+  const auto in = OIIO::ImageInput::open((scratch / "q.rgb.png").string());
+  ASSERT_TRUE(in);
+  EXPECT_EQ(in->spec().width, 2);
+  const auto rgb = firstRow(scratch / "q.rgb.png", 2);
+  EXPECT_GT(rgb[0][0], rgb[0][2] + 100);
+  EXPECT_GT(rgb[1][2], rgb[1][0] + 100);
+  cube.header.channels[5] = "S3 650";
+  EXPECT_FALSE(stokesComponents(cube.header));
 }

@@ -214,15 +214,69 @@ TEST(CDSpectralLocationInvariant, ANarrowingBandTendsToInterpolation) {
 
 TEST(CDSpectralLocationPublished, GaussianHalfMaximum) {
   // the definition of the full width at half maximum; area of a Gaussian: fwhm sqrt(pi / ln 2)
-  // / 2 (Abramowitz and Stegun 7.4.4), less the two tails beyond three widths (1.6e-12 of it)
+  // / 2 (Abramowitz and Stegun 7.4.4), less the two tails, erfc(sqrt(ln 1000)) of it
   const auto response = CDBandResponse::gaussian(10);
   EXPECT_DOUBLE_EQ(response.at(500, 505), 0.5);
   EXPECT_DOUBLE_EQ(response.at(500, 495), 0.5);
-  EXPECT_EQ(response.at(500, 530.1), 0);
-  const double area = response.moments(500, 470, 530, 500).zeroth;
-  EXPECT_NEAR(area, 5 * std::sqrt(std::acos(-1.0) / std::log(2.0)), 1e-10);
-  EXPECT_NEAR(response.moments(500, 470, 530, 500).first, 0, 1e-10);
-  EXPECT_GT(std::abs(area - 5 * std::sqrt(std::acos(-1.0))), 1e-10);  // negative control
+  const double lower = response.lower_nm(500), upper = response.upper_nm(500);
+  const double area = response.moments(500, lower, upper, 500).zeroth;
+  const double whole = 5 * std::sqrt(std::acos(-1.0) / std::log(2.0));
+  EXPECT_NEAR(area, whole * std::erf(std::sqrt(std::log(1000.0))), 1e-10);
+  EXPECT_NEAR(response.moments(500, lower, upper, 500).first, 0, 1e-10);
+  EXPECT_GT(std::abs(area - whole), 1e-10);  // negative control
+}
+
+// A band at 780 nm of 20 nm: cut at a thousandth of the peak, 10 sqrt(ln 1000 / ln 2) nm away.
+TEST(CDSpectralLocationPublished, AGaussianIsCutAtAThousandth) {
+  const CDSpectralLocation band(780, CDBandResponse::gaussian(20));
+  const double reach = 10 * std::sqrt(std::log(1000.0) / std::log(2.0));
+  EXPECT_NEAR(band.lower_nm(), 780 - reach, 1e-12);  // rounding of 780
+  EXPECT_NEAR(band.upper_nm(), 780 + reach, 1e-12);
+  EXPECT_GT(band.lower_nm(), 748);
+  EXPECT_LT(band.upper_nm(), 812);
+  EXPECT_NEAR(band.getResponse().at(780, 780 + reach - 1e-9), 1e-3, 1e-12);
+  EXPECT_EQ(band.getResponse().at(780, 780 + reach + 1e-9), 0);
+  // the weights sum to one all the same
+  const auto weights = CDSpectralGrid::make({748, 770, 790, 812})->weights(band);
+  double sum = 0;
+  for (const auto& weight : weights) sum += weight.weight;
+  EXPECT_NEAR(sum, 1, 1e-14);
+  EXPECT_THROW(CDSpectralGrid::make({749, 812})->weights(band), CDGridError);
+}
+
+TEST(CDSpectralLocationIdentity, BandsComeInAnyOrderAndWithEqualCentres) {
+  const CDSpectralLocation pan(550, CDBandResponse::gaussian(200)), green(550), blue(450);
+  const auto bands = CDSpectralGrid::bands({pan, green, blue, green}, {"pan", "", "blue", ""});
+  EXPECT_EQ(bands->name(0), "pan");
+  EXPECT_EQ(bands->name(1), "");
+  EXPECT_FALSE(bands->isOrdered());
+  EXPECT_EQ(bands->nm(2), 450);
+  EXPECT_EQ(labelsOf(*bands), (std::vector<std::string>{"pan", "550", "blue", "550-2"}));
+  EXPECT_EQ(toString(*bands), "4 entries from 450 to 550 nm");
+  EXPECT_THROW(bands->weights(green), CDGridError);
+  EXPECT_THROW(CDSpectralGrid::bands({}), CDGridError);
+  EXPECT_TRUE(CDSpectralGrid::bands({blue, pan})->isOrdered());
+  // the name is no property of the light
+  EXPECT_TRUE(*CDSpectralGrid::bands({blue}, {"blue"}) == *CDSpectralGrid::make({450}));
+  EXPECT_EQ(CDSpectralGrid::make({450})->name(0), "");
+  EXPECT_THROW(CDSpectralGrid::bands({blue}, {"blue", "red"}), CDGridError);
+}
+
+// A narrow window of a long grid is found by bisection: the same weights as on a short one.
+TEST(CDSpectralLocationInvariant, WeightsDoNotDependOnEntriesFarAway) {
+  std::vector<double> near{500, 507, 513, 520}, far = near;
+  for (int i = 1; i < 300; ++i) far.push_back(520 + i), far.insert(far.begin(), 500 - i);
+  const auto small = CDSpectralGrid::make(near), large = CDSpectralGrid::make(far);
+  for (const CDSpectralLocation& band :
+       {CDSpectralLocation(510, CDBandResponse::rectangular(15)), CDSpectralLocation(507),
+        CDSpectralLocation(511, CDBandResponse::gaussian(5))}) {
+    const auto a = small->weights(band), b = large->weights(band);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].index + 299, b[i].index);
+      EXPECT_EQ(a[i].weight, b[i].weight);
+    }
+  }
 }
 
 TEST(CDSpectralLocationIdentity, ShapesOfTheResponses) {
@@ -259,6 +313,7 @@ TEST(CDSpectralLocationIdentity, ForbiddenBands) {
   EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {1, not_a_number}), CDMathError);
   EXPECT_THROW(CDBandResponse::tabulated({400, 500}, {0, 0}), CDMathError);
   EXPECT_THROW(CDSpectralLocation(100, CDBandResponse::rectangular(200)), CDMathError);
+  EXPECT_THROW(CDSpectralLocation(550, CDBandResponse::gaussian(1e-9)), CDMathError);
   EXPECT_THROW(CDSpectralLocation(600, CDBandResponse::tabulated({400, 500}, {1, 1})),
                CDMathError);
 }

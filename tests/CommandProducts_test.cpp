@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <sstream>
@@ -38,6 +39,45 @@ TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
   EXPECT_TRUE(std::filesystem::exists(scratch / "x.550.rgb.png"));
   EXPECT_EQ(malusIn(scratch.path, "products x.img --all --out all").code, 0);
   EXPECT_TRUE(std::filesystem::exists(scratch / "all/x.450.S3.png"));
+}
+
+TEST(CommandProductsIdentity, BlackPixelsHaveNoProducts) {
+  const Scratch scratch;
+  CDCubeWriter writer(scratch / "y.img", stokesHeader(3, 1, *CDSpectralGrid::make({450}), "1"));
+  writer.write({0, 0, 3, 1}, std::vector<float>{0, 0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 0});
+  writer.finish();
+  ASSERT_EQ(malusIn(scratch.path, "products y.img").code, 0);
+  const CDCube made = readCube(scratch / "y.products.img");
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_TRUE(std::isnan(made.at(0, 0, c))) << c;
+  EXPECT_EQ(made.at(1, 0, 1), 0);  // lit and unpolarised: a degree of zero, and no line
+  EXPECT_TRUE(std::isnan(made.at(1, 0, 3)));
+  EXPECT_EQ(made.at(2, 0, 1), 0.5f);
+  EXPECT_EQ(made.at(2, 0, 3), 45);
+  EXPECT_EQ(made.header.ignore_value, "nan");
+}
+
+TEST(CommandProductsIdentity, WhatDependsOnAnAbsentComponentIsAbsent) {
+  const Scratch scratch;
+  const auto bands = CDSpectralGrid::bands(
+      {CDSpectralLocation(650.0), CDSpectralLocation(450.0)}, {"red", "blue"});
+  CDCubeHeader header = bandHeader(1, 1, *bands, {"S0", "S1", "S2"}, "1");
+  header.interleave = CDInterleave::bil;
+  CDCubeWriter writer(scratch / "y.img", header);
+  writer.write({0, 0, 1, 1}, std::vector<float>{5, 3, 0, 5, 0, 4});
+  writer.finish();
+  ASSERT_EQ(malusIn(scratch.path, "products y.img").code, 0);
+  const CDCube made = readCube(scratch / "y.products.img");
+  EXPECT_EQ(made.header.channels,
+            (std::vector<std::string>{"DoLP red", "AoLP red", "DoLP blue", "AoLP blue"}));
+  EXPECT_EQ(made.header.wavelength_nm, (std::vector<double>{650, 650, 450, 450}));
+  EXPECT_EQ(made.header.interleave, CDInterleave::bil);
+  EXPECT_EQ(made.data, (std::vector<float>{0.6f, 0, 0.8f, 45}));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "y.blue.AoLP.png"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "y.blue.S3.png"));
+  ASSERT_EQ(malusIn(scratch.path, "products y.img --interleave bsq").code, 0);
+  const CDCube again = readCube(scratch / "y.products.img");
+  EXPECT_EQ(again.header.interleave, CDInterleave::bsq);
+  EXPECT_EQ(again.data, made.data);
 }
 
 TEST(CommandProductsIdentity, BandsWithoutAHarmlessNameGetTheirNumber) {
@@ -101,6 +141,8 @@ TEST(CommandProductsIdentity, BadCubesAreOneLineAndLeaveNothing) {
             std::string::npos);
   EXPECT_NE(complaint("products x.img --band 0").find("from 1 to 3"), std::string::npos);
   EXPECT_NE(complaint("products x.img --band 1 --all").find("beside --all"), std::string::npos);
+  EXPECT_NE(complaint("products x.img --interleave big").find("bip (by pixel)"),
+            std::string::npos);
   std::filesystem::resize_file(scratch / "x.img", 100);
   EXPECT_NE(complaint("info x.img").find("100 bytes"), std::string::npos);
   cubeIn(scratch.path);
