@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench format dist sanitize sanitize-core tsan mutants clang coverage fuzz fresh-machine clean help
+.PHONY: all test book pdf reproduce bench format dist sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -102,6 +102,11 @@ fuzz: need-program ## throw mutilated scenes, meshes and tables at the readers (
 	@cmake --preset fuzz $(GENERATOR) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
+
+SOAK_SECONDS ?= 600
+soak: need-program $(BUILD)/CMakeCache.txt ## kill, resume, fill the disk and race writers, and compare bits (SOAK_SECONDS=600)
+	@cmake --build $(BUILD) -j $(JOBS) --target malus
+	@tests/soak.py $(BUILD)/malus $(SOAK_SECONDS)
 
 fresh-machine: ## prove the package list in a minimal Debian root (as root)
 	@tests/fresh-machine.sh

@@ -107,5 +107,20 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
       put(in / (part + ".run.json"), word.dump());
     }
   });
+  // truth comes after light: what the light has become by then must go as well
+  says("bytes",
+       [&](const fs::path& in) { fs::resize_file(in / (second + ".truth.img"), 100); });
+  says("is not what its record says", [&](const fs::path& in) {
+    std::fstream file(in / (third + ".truth.img"),
+                      std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(4711);
+    file.put('x');
+  });
+  // a refused merge leaves the result of a former one alone
+  ASSERT_EQ(malusIn(scratch.path, "merge good").code, 0);
+  const std::string before = contents(scratch / "good/chunky-bar-copper.img");
+  fs::remove(scratch / ("good/" + second + ".truth.img"));
+  EXPECT_EQ(malusIn(scratch.path, "merge good").code, 2);
+  EXPECT_EQ(contents(scratch / "good/chunky-bar-copper.img"), before);
   EXPECT_EQ(malusIn(scratch.path, "merge nowhere").code, 2);
 }

@@ -9,6 +9,14 @@ project=$(cd "$(dirname "$0")/.." && git rev-parse --show-toplevel)
 root=${1:-$(mktemp -d /var/tmp/malus-fresh-XXXXXX)}
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)
 
+# Files in it will be removed and replaced: it must be empty, or made by this script.
+mark=.malus-fresh-machine
+root=$(realpath -m "$root")
+if [ -e "$root" ] && [ ! -e "$root/$mark" ] && [ -n "$(ls -A "$root" 2>/dev/null)" ]; then
+  echo "fresh-machine.sh: $root is not empty and not of our making; name an empty directory" >&2
+  exit 2
+fi
+
 [ "$(id -u)" = 0 ] || { echo "fresh-machine.sh must run as root: chroot needs it" >&2; exit 2; }
 command -v debootstrap >/dev/null || { echo "debootstrap is missing: apt-get install debootstrap" >&2; exit 2; }
 
@@ -19,6 +27,7 @@ if [ ! -e "$root/bin/sh" ]; then
   say "a minimal Debian 12 in $root"
   debootstrap --variant=minbase --include=git,make,ca-certificates bookworm "$root" "$mirror" >"$root.log" 2>&1 ||
     { tail -n 5 "$root.log" >&2; exit 1; }
+  touch "$root/$mark"
 fi
 rm -f "$root/etc/apt/sources.list"
 cp -r /etc/apt/sources.list.d /etc/apt/apt.conf.d "$root/etc/apt/"
