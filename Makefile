@@ -97,7 +97,7 @@ coverage: need-test ## which lines of nw/ the tests reach
 	@doc/loom/coverage.py build-coverage
 
 FUZZ_SECONDS ?= 600
-fuzz: need-program ## throw mutilated scenes, meshes and tables at the readers (FUZZ_SECONDS=600 in all)
+fuzz: need-program ## throw mutilated scenes, meshes, tables and measured files at the readers (FUZZ_SECONDS=600 in all)
 	@$(NEED) clang libclang-rt-14-dev
 	@cmake --preset fuzz $(GENERATOR) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)

@@ -120,6 +120,57 @@ TEST(CDGeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
   EXPECT_NO_THROW(placed(mesh, CDTransform::scale(1e6)));
 }
 
+// The library behind the door takes 3x for 3, 1,5 for 1, and 4294967299 for 3.
+TEST(CDGeometryIdentity, CornersAreWholeNumbersOf32BitsAndNothingElse) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const std::string bad : {"4294967299", "1,5", "3x", "2147483648", "-9999999999", "1.5",
+                                "3/", "/3", "3//", "3/1/1/1", "0x3", "+3", "3/x", "nan"})
+    EXPECT_EQ(
+        complaint(corners + "f 1 2 " + bad + "\n"),
+        "m.obj:4: f = " + bad +
+            ": is no corner of a face; write whole numbers below 2147483648: 7, 7/1, 7//3 or "
+            "7/1/3");
+  for (const std::string good : {"3", "-1", "3/7", "3//9", "3/7/9", "-1/-1/-1"})
+    EXPECT_EQ(complaint(corners + "f 1 2 " + good + "\n"), "none") << good;
+}
+
+TEST(CDGeometryIdentity, NamesThatNoRecordCouldHoldAreRefusedWithTheirLine) {
+  const std::string rest = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const std::string keyword : {"g", "o", "usemtl"}) {
+    EXPECT_EQ(complaint("# saved as Latin-1\n" + keyword + " Stra\xdf\x65\n" + rest),
+              "m.obj:2: " + keyword +
+                  " = Stra\\xdfe: is not UTF-8 from byte 5 on (0xdf); save it as UTF-8, or use "
+                  "letters of ASCII");
+    EXPECT_NE(complaint(keyword + " " + std::string(1001, 'n') + "\n" + rest).find("is longer"),
+              std::string::npos);
+    EXPECT_EQ(complaint(keyword + " Stra\u00dfe\n" + rest), "none");
+  }
+}
+
+TEST(CDGeometryIdentity, CoordinatesThatNobodyCouldSquareAreRefusedWithTheirLine) {
+  for (const std::string bad : {"1e19", "-2e18", "1e300", "-1e308"})
+    EXPECT_NE(complaint("v 0 0 0\nv 1 " + bad + " 0\nv 0 1 0\nf 1 2 3\n")
+                  .find("m.obj:2: vertex y = " + bad + ": is beyond 1e18 in any unit"),
+              std::string::npos)
+        << bad;
+}
+
+// Each face has a group and a material of its own, and each name its own number.
+TEST(CDGeometryIdentity, AHundredThousandNamesKeepTheirOrder) {
+  constexpr std::uint32_t count = 100'000;
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (std::uint32_t i = 0; i < count; ++i)
+    text += fmt::format("g part-{0}\nusemtl paint-{0}\nf 1 2 3\n", i);
+  const CDMesh mesh = parsed(text + "g part-7\nf 1 2 3\n");
+  ASSERT_EQ(mesh.facets.size(), count);
+  ASSERT_EQ(mesh.triangles.size(), count + 1);
+  for (std::uint32_t i = 0; i < count; i += 997) {
+    EXPECT_EQ(mesh.triangles[i].facet, i);
+    EXPECT_EQ(mesh.materials[mesh.triangles[i].material], fmt::format("paint-{}", i));
+  }
+  EXPECT_EQ(mesh.triangles.back().facet, 7u);
+}
+
 TEST(CDGeometryIdentity, TransformsComposeInOrder) {
   const CDTransform turn = CDTransform::rotate({0, 0, 1}, std::numbers::pi / 2);
   const CDTransform move = CDTransform::translate({10, 0, 0});

@@ -2,6 +2,7 @@
 #include "imaging/CDImage.hpp"
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -212,6 +213,32 @@ TEST(CDImageIdentity, BadCubesAreNamed) {
   EXPECT_NE(spoil("fwhm = {20, ", "fwhm = {").find("11 widths"), std::string::npos);
   EXPECT_NE(spoil("interleave = bip", "interleave = big").find("bip, bil or bsq"),
             std::string::npos);
+  // sizes that no file holds, and a list that is too short for its bands
+  std::string huge = text;
+  for (const auto& [key, size] :
+       {std::pair{"samples = 6", "samples = 1000000"}, {"lines = 4", "lines = 1000000"}})
+    if (const auto at = huge.find(key); at != huge.npos)
+      huge.replace(at, std::string(key).size(), size);
+  put(scratch / "x.img.hdr", huge);
+  EXPECT_NE(complaint(scratch / "x.img").find("should hold 1000000 x"), std::string::npos);
+}
+
+// One wavelength a line, as many programs write them; each line is looked at once.
+TEST(CDImageIdentity, AHeaderOfManyLinesIsRead) {
+  const Scratch scratch;
+  constexpr int bands = 100'000;
+  std::string text = fmt::format(
+      "ENVI\nsamples = 1\nlines = 1\nbands = {}\ndata type = 4\ninterleave = bip\nbyte order = "
+      "0\n"
+      "wavelength = {{\n",
+      bands);
+  for (int i = 0; i < bands; ++i)
+    text += fmt::format("{}{}\n", 400 + i * 0.01, i + 1 < bands ? "," : "}");
+  put(scratch / "x.img", std::string(4 * bands, '\0'));
+  put(scratch / "x.img.hdr", text);
+  const CDCube cube = readCube(scratch / "x.img");
+  ASSERT_EQ(cube.header.wavelength_nm.size(), std::size_t{bands});
+  EXPECT_DOUBLE_EQ(cube.header.wavelength_nm[4711], 400 + 4711 * 0.01);
 }
 
 // Other people's readers: GDAL and Spectral Python, as Debian ships them.

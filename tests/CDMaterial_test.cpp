@@ -182,9 +182,9 @@ TEST(CDMaterialIdentity, BadRecordsNameTheirLine) {
       says(refusal("x.yml", "DATA:\n  - type: formula 5\n    wavelength_range: 0.6 0.3\n"),
            "is not a range"));
   EXPECT_TRUE(
-      says(complaint([] { readSpectrum("x.csv", "r", bands({500})); }), "cannot be opened"));
+      says(complaint([] { readSpectrum("x.csv", "r", bands({500})); }), "is not there"));
   EXPECT_TRUE(
-      says(complaint([] { readOpticalConstants("x.yml", bands({500})); }), "cannot be opened"));
+      says(complaint([] { readOpticalConstants("x.yml", bands({500})); }), "is not there"));
 }
 
 TEST(CDMaterialIdentity, LimitsAreTheCallers) {

@@ -294,7 +294,7 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
       "give a CSV table of wavelength_nm, n, k, bias, sigma and, if wanted, rho_d, rho_v (the "
       "name of a file)\n";
   EXPECT_EQ(error(nefds + "--param file=nf.csv "),
-            "command line: --param file = nf.csv: cannot be opened; " + remedy);
+            "command line: --param file = nf.csv: is not there; " + remedy);
   EXPECT_EQ(error(nefds + "--param file=. "),
             "command line: --param file = .: is a directory; " + remedy);
   EXPECT_EQ(error(nefds), "command line: --param file: is missing for nefds; " + remedy);
@@ -484,7 +484,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {plate + "--steps 2 --out a.csv",
        "command line: --steps: belongs to --table; leave it out"},
       {copper + "--geometries none.csv --out a.csv",
-       "none.csv: cannot be opened; give the name of a readable CSV file"},
+       "none.csv: is not there; give the name of a readable CSV file"},
       {copper + "--geometries q.csv --theta-i 30 --out a.csv",
        "command line: --geometries: excludes --theta-i, --theta-r and --phi; give a file or "
        "angles"},

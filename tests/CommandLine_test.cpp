@@ -77,8 +77,8 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
        "what is understood\n"},
       {"info ''",
        "command line: FILE: must not be empty; malus info --help shows what is understood\n"},
-      {"table none.csv", "none.csv: cannot be opened; give the name of a readable CSV file\n"},
-      {"table --seal none.csv", "none.csv: cannot be opened; name a readable CSV file\n"}};
+      {"table none.csv", "none.csv: is not there; give the name of a readable CSV file\n"},
+      {"table --seal none.csv", "none.csv: is not there; name a readable CSV file\n"}};
   for (const auto& [arguments, line] : cases) {
     const Outcome outcome = malusIn(scratch.path, arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;

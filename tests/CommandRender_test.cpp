@@ -189,15 +189,15 @@ const std::vector<BadScene> bad_scenes{
      "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
     {R"({"platform": null})", "lacks \"platform\"; give where the sensor stands"},
     {R"({"geometry": [{"obj": "missing.obj"}]})",
-     "geometry[0].obj = \"missing.obj\": is no file there; name a file; relative paths begin "
+     "geometry[0].obj = \"missing.obj\": is not there; name a file; relative paths begin "
      "in "},
     {R"({"geometry": [{"obj": "nan.obj"}]})", "nan.obj"},
     {R"({"geometry": []})", "geometry = []: is not allowed here"},
     {R"({"sensor": {"width": 0}})",
-     "sensor.width = 0: is not allowed here; give a whole number, 1 or more"},
+     "sensor.width = 0: is not allowed here; give a whole number, 1 to 2147483648"},
     {R"({"sensor": {"height": -4}})", "sensor.height = -4: is not allowed here"},
     {R"({"sensor": {"field_of_view_deg": 180}})",
-     "sensor.field_of_view_deg = 180: is not allowed here"},
+     "sensor.field_of_view_deg = 180 deg: is not allowed here"},
     {R"({"sensor": {"pixel_pitch_um": 5}})", "does not say in one way what it sees"},
     {R"({"platform": {"position_m": [-2, 2, 0.5]}})",
      "the camera of frame 0 stands inside of a solid"},
@@ -220,15 +220,16 @@ const std::vector<BadScene> bad_scenes{
      "did you mean torrance-sparrow?"},
     {R"({"materials": {"ground": null}})", "lacks the material \"ground\" of a surface"},
     {R"({"sky": {"radiance_W_m2_sr_nm": -0.05}})",
-     "sky.radiance_W_m2_sr_nm = -0.05: is not allowed here; give a number that is not "
-     "negative"},
+     "sky.radiance_W_m2_sr_nm = -0.05 W/(m^2 sr nm): is not allowed here; give a radiance in "
+     "W/(m^2 sr nm), 0 to 1e12; or a spectrum"},
     {R"({"sun": {"irradiance_W_m2_nm": -1}})",
-     "sun.irradiance_W_m2_nm = -1: is not allowed here"},
+     "sun.irradiance_W_m2_nm = -1 W/(m^2 nm): is not allowed here"},
     {R"({"sun": null, "sky": null})", "has no light"},
     {R"({"sun": null, "sky": null, "materials": {"ground": {"temperature_K": 0}}})",
      "has no light"},
     {R"({"materials": {"ground": {"temperature_K": -1}}})",
-     "materials.ground.temperature_K = -1: is not allowed here; give a temperature in K, 0 to "
+     "materials.ground.temperature_K = -1 K: is not allowed here; give a temperature in K, 0 "
+     "to "
      "100000"},
     {R"({"materials": {"ground": {"temperature_K": "hot"}}})", "give a temperature in K"},
     {R"({"materials": {"ground": {"model": "beard-maxwell", "reflectance": null, "n": 1.304, "k": 7.479,
@@ -241,12 +242,15 @@ const std::vector<BadScene> bad_scenes{
      "does not say in one way where the sun stands"},
     {R"({"bands": {"wavelength_nm": [550, 450]}})", "bands"},
     {R"({"bands": {"wavelength_nm": [-550]}})",
-     "bands.wavelength_nm[0] = -550: is not allowed here; give"},
+     "bands.wavelength_nm[0] = -550 nm: is not allowed here; give"},
     {R"({"malus": 2})",
      "malus = 2: is not allowed here; give the version of the scene format, 1"},
     {R"({"radiometry": {"rays": [0]}})", "radiometry.rays[0] = 0: is not allowed here"},
     {R"({"radiometry": {"rays": [100000000000]}})",
-     "radiometry.rays[0] = 100000000000: are too many rays from one hit; give at most 1000000"},
+     "radiometry.rays[0] = 100000000000: is not allowed here; give a whole number, 1 to "
+     "2147483648"},
+    {R"({"radiometry": {"rays": [1000001]}})",
+     "radiometry.rays[0] = 1000001: are too many rays from one hit; give at most 1000000"},
     {R"({"radiometry": {"rays": [5000, 2]}})",
      "radiometry.rays[0] = 5000: are too many rays from one hit that lead to more; give at "
      "most 4096"},
@@ -294,7 +298,7 @@ const std::vector<BadScene> bad_scenes{
      "the window of a polarimeter must fit into its image"},
     {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"],
          "noise": {"electrons_per_unit": 10, "full_well_electrons": -5}}}})",
-     "full_well_electrons = -5: is not allowed here; give a number above 0"},
+     "full_well_electrons = -5: is not allowed here; give a number of electrons, 1 to 1e15"},
     {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S0"], "noise": {"read_noise_electrons": 3}}}})",
      "lacks \"electrons_per_unit\""},
 };

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <limits>
 
 #include "ModelChecks.hpp"
 #include "Scratch.hpp"
@@ -264,6 +265,79 @@ TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
     EXPECT_NE(cut.find("; give a complete file of measured reflection"), std::string::npos)
         << length << cut;
   }
+}
+
+// Sizes that a file cannot hold. Three axes that claim the same 2 MB have 2^19 nodes each; with 2^7 wavelengths and 2^4 elements their
+// product is 2^68, which is 0 in 64 bits: room would be made for nothing, and then be written to.
+TEST(MeasuredBRDFIdentity, SizesThatOverflowAreRefusedBeforeAnythingIsAllocated) {
+  const Scratch scratch;
+  const auto tensor = [&](std::uint64_t nodes, std::uint64_t wavelengths,
+                          std::vector<std::uint64_t> shape) {
+    std::string head("tensor_file\0\1\0", 14), data;
+    append(head, std::uint32_t{5});
+    const auto field = [&](const std::string& name, char type,
+                           const std::vector<std::uint64_t>& sizes, std::uint64_t offset) {
+      append(head, static_cast<std::uint16_t>(name.size()));
+      head += name;
+      append(head, static_cast<std::uint16_t>(sizes.size()));
+      head += type;
+      append(head, std::uint64_t{4096 + offset});
+      for (const std::uint64_t size : sizes) append(head, size);
+    };
+    for (const char* name : {"phi_d", "theta_d", "theta_h"}) field(name, 10, {1, nodes}, 0);
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(nodes, 1 << 19); ++i)
+      append(data, static_cast<float>(i) * 6.2f * 0x1p-19f);  // all round, for phi_d
+    field("wvls", 3, {wavelengths}, data.size());
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(wavelengths, 1 << 12); ++i)
+      append(data, static_cast<std::uint16_t>(400 + i));
+    field("M", 10, shape, data.size());
+    data += std::string(64 * sizeof(float), '\0');
+    head.resize(4096, '\0');
+    return refusal([&] { from(scratch, head + data); });
+  };
+  constexpr std::uint64_t many = 1 << 19, all = ~std::uint64_t{0};
+  EXPECT_NE(tensor(many, 1 << 7, {many, many, many, 1 << 7, 4, 4}).find("whose shape is not"),
+            std::string::npos);
+  EXPECT_NE(tensor(many, 1 << 11, {many, many, many, 1 << 11, 4, 4}).find("whose shape is not"),
+            std::string::npos);
+  for (const std::uint64_t count :
+       {all, all / 2 + 1, std::uint64_t{1} << 62, std::uint64_t{1} << 40}) {
+    EXPECT_NE(tensor(count, 1, {1, 1, 1, 1, 4, 4}).find("ends too early"), std::string::npos)
+        << count;
+    EXPECT_NE(tensor(1, count, {1, 1, 1, 1, 4, 4}).find("ends too early"), std::string::npos)
+        << count;
+  }
+  EXPECT_EQ(tensor(1, 1, {1, 1, 1, 1, 4, 4}), "accepted");  // negative control
+}
+
+TEST(MeasuredBRDFIdentity, NumbersThatNoSurfaceReflectsAreRefused) {
+  const Scratch scratch;
+  std::string merl;
+  for (const std::int32_t size : {2, 2, 2}) append(merl, size);
+  for (int i = 0; i < 24; ++i) append(merl, 100.0);
+  const auto spoilt = [&](double number) {
+    std::string bytes = merl;
+    std::memcpy(&bytes[12 + 8 * 13], &number, 8);
+    put(scratch / "m", bytes);
+    return refusal([&] { readMERL(scratch / "m", {450, 550, 650}); });
+  };
+  EXPECT_EQ(spoilt(-1), "accepted");  // negative control: unknown
+  EXPECT_NE(spoilt(1e100).find("in cell 5, beyond any reflection"), std::string::npos);
+  EXPECT_NE(spoilt(std::numeric_limits<double>::infinity()).find("beyond any reflection"),
+            std::string::npos);
+  EXPECT_NE(spoilt(std::nan("")).find("beyond any reflection"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              from(scratch,
+                   "theta_h_deg,theta_d_deg,phi_d_deg,wavelength_nm,f00\n0,0,0,550,1e39\n");
+            }).find("f00 = 1e+39 /sr: is beyond any reflection"),
+            std::string::npos);
+  std::string rows = "theta_h_deg,theta_d_deg,phi_d_deg,wavelength_nm,f00\n";
+  for (int i = 0; i < 3000; ++i)
+    rows += fmt::format("{0},{0},{1},{2},1\n", i * 0.03, i * 0.1, 400 + i);
+  EXPECT_NE(refusal([&] {
+              from(scratch, rows);
+            }).find("do not form a grid, which would have 3000 x 3000 x"),
+            std::string::npos);
 }
 
 // 90, 90, 180, then red, green, blue as doubles; the cell of phi_d runs fastest.

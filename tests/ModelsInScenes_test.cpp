@@ -139,7 +139,7 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
   const Outcome missing = malusIn(scratch.path, dry);
   EXPECT_EQ(missing.code, 2);
   EXPECT_TRUE(missing.err.starts_with("there/s.json:")) << missing.err;
-  EXPECT_NE(missing.err.find("materials.copper-010.file = \"nef.csv\": is no file there; "
+  EXPECT_NE(missing.err.find("materials.copper-010.file = \"nef.csv\": is not there; "
                              "name a file; relative paths begin in there"),
             std::string::npos)
       << missing.err;

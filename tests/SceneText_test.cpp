@@ -163,6 +163,39 @@ TEST(SceneTextIdentity, AKeyThatComesTwiceIsRefusedWhereItComesAgain) {
   EXPECT_EQ(complaint("{\"a\": {\"a\": 2}}"), "accepted");
 }
 
+TEST(SceneTextIdentity, TextsAreLinesAndNotBooks) {
+  EXPECT_TRUE(begins(complaint("{\n \"title\": \"a\\nb\"}"),
+                     "s.json:2:11: has a control character in a text; write letters"))
+      << complaint("{\n \"title\": \"a\\nb\"}");
+  EXPECT_TRUE(begins(complaint("{\"a\\u0000b\": 1}"), "s.json:1:2: has a control character"));
+  EXPECT_TRUE(
+      begins(complaint("{\"a\": \"" + std::string(1001, 'x') + "\"}"),
+             "s.json:1:7: has a text of 1001 bytes, more than 1000; give a shorter one"));
+  EXPECT_EQ(complaint("{\"a\": \"" + std::string(1000, 'x') + "\"}"), "accepted");
+  for (const std::string& text : {"{\"" + std::string(10'000'000, 'k') + "\": 1}",
+                                  "{\"a\": 1" + std::string(10'000'000, '0') + "}",
+                                  "{\"a\": " + std::string(10'000'000, 'x') + "}"}) {
+    EXPECT_TRUE(begins(complaint(text), "s.json:1:")) << complaint(text).substr(0, 300);
+    EXPECT_LT(complaint(text).size(), 500u);
+  }
+}
+
+TEST(SceneTextIdentity, AMistakeInAFileSaysWhoNamedTheFile) {
+  const CDSceneText text("{\n  \"file\": \"x.csv\"}", "s.json", ".");
+  const CDSceneNode node = text.root()["file"];
+  const auto said = [&](const CDInputPlace& place) {
+    try {
+      inFileOf(node, [&] { throw CDInputError(place, "7", "is bad", "mend it"); });
+    } catch (const CDInputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(said({"x.csv", 3, "n"}),
+            "x.csv:3: n = 7: is bad; mend it; the file is named at s.json:2:11: file");
+  EXPECT_EQ(said({"s.json", 3, "n"}), "s.json:3: n = 7: is bad; mend it");
+}
+
 TEST(SceneTextIdentity, NestingBeyondUseIsRefused) {
   EXPECT_TRUE(begins(complaint(std::string(100000, '[')), "s.json:1:33: is nested too deeply"));
   EXPECT_EQ(complaint(std::string(30, '[') + std::string(30, ']')), "accepted");

@@ -11,17 +11,26 @@
 #include <string_view>
 
 #include "light/CDError.hpp"
+#include "light/InputFiles.hpp"
+
+// A door is a function of bytes. For libFuzzer it has the one name that libFuzzer calls; the test that replays former findings
+// (tests/Fuzz_test.cpp) includes all doors, each under its own name.
+#ifndef MALUS_DOOR
+#define MALUS_DOOR(name) \
+  extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+#endif
 
 namespace malus::fuzzing {
-/// Any exception but CDInputError escapes, and stops the fuzzer; so does a message of no or many lines.
+/// Any exception but CDInputError escapes, and stops the fuzzer; so does a message of no or many lines, or of no UTF-8.
 template <class Open>
 int knock(const Open& open) {
   try {
     open();
   } catch (const CDInputError& error) {
     const std::string_view message = error.what();
-    if (message.empty() || message.find('\n') != std::string_view::npos) {
-      std::fprintf(stderr, "not one line: %s\n", error.what());
+    if (message.empty() || message.find('\n') != message.npos || message.size() > 6000 ||
+        endOfUTF8(message) != message.npos) {
+      std::fprintf(stderr, "not one line of UTF-8: %s\n", error.what());
       std::abort();
     }
   }

@@ -4,7 +4,7 @@
 
 using namespace malus;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+MALUS_DOOR(mesh) {
   return fuzzing::knock([&] {
     const CDMesh mesh = readOBJ(fuzzing::fileWith(fuzzing::textOf(data, size), ".obj"));
     CDGeometryBuilder builder;

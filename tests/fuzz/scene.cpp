@@ -5,7 +5,7 @@
 
 using namespace malus;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+MALUS_DOOR(scene) {
   return fuzzing::knock(
       [&] { readSceneText(fuzzing::textOf(data, size), "scene.json", MALUS_SCENES); });
 }

@@ -27,7 +27,7 @@ void asSky(const std::string& text) {
 }
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+MALUS_DOOR(table) {
   if (size == 0) return 0;
   const std::string text = fuzzing::textOf(data + 1, size - 1);
   return fuzzing::knock([&] {
