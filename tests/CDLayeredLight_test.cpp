@@ -37,47 +37,124 @@ CDScatterer spheroids() {
 }
 }  // namespace
 
-// Two methods without a common equation. Sixteen streams integrate functions like exp(-tau/mu) over mu to
-// about 1e-7 at the ends; inside, where light comes from both sides, it takes more of them.
+// Two methods without a common equation. What 32 streams resolve from mu = 0.02 on is 1e-8 for an irradiance of pi;
+// two cuts of one layer differ by rounding and by what the first layers leave.
 TEST(CDLayeredLightInvariant, AgreesWithTheCoherencyTensor) {
   const double depth = 0.5, rho = 0.03, sun = 0.6, albedo = 0.25;
   const CDRayleighLight exact(CDRayleighAtmosphere(depth, rho), sun, albedo, pi);
   const CDScatterer air = rayleighScatterer(rho);
   const std::vector<double> depths{0.2, 0.1, 0.5};
   const CDLayeredLight whole({{{air, depth}}}, sun, albedo, pi, views, {}, depths);
-  const CDLayeredLight fine({{{air, depth}}}, sun, albedo, pi, views, {32, -1}, depths);
   const CDLayeredLight cut({{{air, 0.2}}, {{air, 0.1}, {air, 0.2}}}, sun, albedo, pi, views);
   for (std::size_t v = 0; v < views.size(); ++v)
     for (const double phi : {0.0, 40.0, 90.0, 200.0}) {
       const auto azimuth = CDRayleighLight::Azimuth::fromRadians(phi * degree);
-      EXPECT_LT(apart(whole.down(v, phi * degree), exact.down(views[v], azimuth)), 1e-7)
+      EXPECT_LT(apart(whole.down(v, phi * degree), exact.down(views[v], azimuth)), 1e-8)
           << v << ' ' << phi;
-      EXPECT_LT(apart(whole.up(v, phi * degree), exact.up(views[v], azimuth)), 1e-7)
+      EXPECT_LT(apart(whole.up(v, phi * degree), exact.up(views[v], azimuth)), 1e-8)
           << v << ' ' << phi;
       for (std::size_t k = 0; k < depths.size(); ++k) {
         EXPECT_LT(
-            apart(fine.down(v, phi * degree, k), exact.down(views[v], azimuth, depths[k])),
-            1e-7);
-        EXPECT_LT(apart(fine.up(v, phi * degree, k), exact.up(views[v], azimuth, depths[k])),
-                  1e-7);
+            apart(whole.down(v, phi * degree, k), exact.down(views[v], azimuth, depths[k])),
+            1e-8);
+        EXPECT_LT(apart(whole.up(v, phi * degree, k), exact.up(views[v], azimuth, depths[k])),
+                  1e-8);
       }
       EXPECT_LT(apart(cut.down(v, phi * degree), whole.down(v, phi * degree)), 1e-9);
       if (phi == 0 || views[v] == 1) continue;
       EXPECT_GT(apart(whole.down(v, -phi * degree), exact.down(views[v], azimuth)),
                 1e-4);  // control
     }
-  EXPECT_NEAR(whole.diffuseDown(), exact.diffuseDown(), 1e-7);
-  EXPECT_NEAR(whole.diffuseUp(), exact.diffuseUp(), 1e-7);
+  EXPECT_NEAR(whole.diffuseDown(), exact.diffuseDown(), 1e-8);
+  EXPECT_NEAR(whole.diffuseUp(), exact.diffuseUp(), 1e-8);
   EXPECT_NEAR(whole.directFlux(), exact.directFlux(), 1e-13);
 }
 
-// Natraj, Li and Yung 2009: tau 0.5, albedo 0.25, mu0 0.6, mu 0.4, 90 deg.
+namespace {
+// The grid was chosen before anything was measured on it: from air that hardly scatters to air that hardly lets a beam
+// through, suns from the horizon's neighbourhood to the zenith, black and white ground, the flattest line of sight first.
+const std::vector<double> flat_and_steep{0.02, 0.03, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
+double largestDeviation(const std::vector<CDAirLayer>& layers, double depth, double sun,
+                        double albedo, const std::vector<double>& inside,
+                        CDLayeredAccuracy accuracy = {}) {
+  const CDRayleighLight exact(CDRayleighAtmosphere(depth, 0.03), sun, albedo, pi);
+  const CDLayeredLight light(layers, sun, albedo, pi, flat_and_steep, accuracy, inside);
+  double most = 0;
+  for (std::size_t v = 0; v < flat_and_steep.size(); ++v)
+    for (const double phi : {0.0, 1.0, 2.5}) {
+      const auto azimuth = CDRayleighLight::Azimuth::fromRadians(phi);
+      const double mu = flat_and_steep[v];
+      most = std::max({most, apart(light.down(v, phi), exact.down(mu, azimuth)),
+                       apart(light.up(v, phi), exact.up(mu, azimuth))});
+      for (std::size_t k = 0; k < inside.size(); ++k)
+        most = std::max({most, apart(light.down(v, phi, k), exact.down(mu, azimuth, inside[k])),
+                         apart(light.up(v, phi, k), exact.up(mu, azimuth, inside[k]))});
+    }
+  return most;
+}
+}  // namespace
+
+// 1e-8 is what the chapter promises.
+TEST(CDLayeredLightInvariant, FlatLinesOfSightAgreeOverTheGrid) {
+  const auto air = [](double depth) {
+    return std::vector<CDAirLayer>{{{rayleighScatterer(0.03), depth}}};
+  };
+  for (const double depth : {0.001, 0.003, 0.01, 0.05, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0})
+    for (const double sun : {0.02, 0.2, 1.0})
+      for (const double albedo : {0.0, 1.0})
+        EXPECT_LT(largestDeviation(air(depth), depth, sun, albedo, {}), 1e-8)
+            << "tau " << depth << " mu0 " << sun << " albedo " << albedo;
+  for (const double depth : {0.003, 0.2, 5.0})  // and inside, near top and ground too
+    EXPECT_LT(largestDeviation(air(depth), depth, 0.5, 0.3,
+                               {0.02 * depth, 0.5 * depth, 0.95 * depth}),
+              1e-8)
+        << "tau " << depth;
+  // control: sixteen streams do not resolve it
+  EXPECT_GT(largestDeviation(air(0.01), 0.01, 0.5, 0, {}, {16, -1}), 1e-8);
+}
+
+// A grazing sun: the balance over white ground, against what comes in; and the exact solution, in the same unit, to 1e-5 at
+// mu = 0.02, which is what that solution keeps of reciprocity there.
+TEST(CDLayeredLightInvariant, AGrazingSunKeepsTheBalance) {
+  const CDScatterer air = rayleighScatterer(0.03);
+  for (const double sun : {1e-3, 1e-5, 1e-9})
+    for (const double depth : {0.05, 0.5}) {
+      const CDLayeredLight light({{{air, depth}}}, sun, 1, pi, flat_and_steep);
+      const CDRayleighLight exact(CDRayleighAtmosphere(depth, 0.03), sun, 1, pi);
+      EXPECT_NEAR(light.diffuseUp() / (pi * sun), 1, 1e-8) << sun << ' ' << depth;
+      EXPECT_GT(std::abs(light.diffuseUp() / (pi * sun * 1.001) - 1), 1e-8);  // control
+      for (std::size_t v = 0; v < flat_and_steep.size(); ++v)
+        for (const double phi : {0.0, 1.0, 3.0}) {
+          const auto azimuth = CDRayleighLight::Azimuth::fromRadians(phi);
+          EXPECT_GT(light.up(v, phi).getScalar(), 0);
+          EXPECT_LT(apart(light.up(v, phi), exact.up(flat_and_steep[v], azimuth)),
+                    1e-5 * pi * sun);
+        }
+    }
+}
+
+// A trace of aerosol changes next to nothing: single scattering in a depth t adds a_1 t / (4 mu) to the radiance, for 1e-10
+// and mu = 0.02 some 1e-9 (1e-9 of aerosol would itself add more than is allowed). Only the harmonics that air has.
+TEST(CDLayeredLightInvariant, ATraceOfAerosolAnywhereChangesNothing) {
+  const CDScatterer air = rayleighScatterer(0.03);
+  const double trace = 1e-10, depth = 0.2;
+  const CDParticles dust{spheroids(), trace, 0.97};
+  for (const std::vector<CDAirLayer>& layers : std::vector<std::vector<CDAirLayer>>{
+           {{{air, depth}, dust}}, {{dust}, {{air, depth}}}, {{{air, depth}}, {dust}}})
+    EXPECT_LT(largestDeviation(layers, depth, 0.5, 0.3, {}, {0, 2}), 1e-8);
+  // control: a millionth is seen
+  EXPECT_GT(largestDeviation({{{air, depth}, {spheroids(), 1e-6, 0.97}}}, depth, 0.5, 0.3, {},
+                             {0, 2}),
+            1e-8);
+}
+
+// Half a unit of the printed digit, and the chapter's 1e-8. Natraj, Li and Yung 2009: tau 0.5, albedo 0.25, mu0 0.6, mu 0.4, 90 deg.
 TEST(CDLayeredLightPublished, APrintedValue) {
   const CDLayeredLight light({{{rayleighScatterer(0), 0.5}}}, 0.6, 0.25, pi, {0.4});
   const CDStokesVector value = light.down(0, 90 * degree);
-  EXPECT_NEAR(value.getStokes(0), 0.22239883, 1e-7);
-  EXPECT_NEAR(value.getStokes(1), -0.05505941, 1e-7);
-  EXPECT_NEAR(value.getStokes(2), 0.11112462, 1e-7);
+  EXPECT_NEAR(value.getStokes(0), 0.22239883, 1.5e-8);
+  EXPECT_NEAR(value.getStokes(1), -0.05505941, 1.5e-8);
+  EXPECT_NEAR(value.getStokes(2), 0.11112462, 1.5e-8);
 }
 
 // Siewert 2000, problem IIA: spheroids, tau 1, single-scattering albedo 0.973527, mu0 0.6, black ground;
@@ -132,9 +209,11 @@ TEST(CDLayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
   EXPECT_GT(std::abs(other.up(0, 0).getStokes(1) - light.up(0, 0).getStokes(1)), 1e-3);
 }
 
-// A thin layer to first order: the scattering matrix between beam and view, rotated by vectors.
+// A thin layer to first order: the scattering matrix between beam and view, rotated by vectors. Of the light scattered
+// once, half of 1 + ln(1 / depth) times the depth is scattered again on its way out, mostly where it is flat; six times that
+// leaves room for the phase function, and a wrong sign of the azimuth must be beyond it.
 TEST(CDLayeredLightIdentity, AThinLayerScattersOnce) {
-  const double depth = 1e-6, sun = 0.5;
+  const double depth = 1e-6, sun = 0.5, again = 3 * depth * (1 - std::log(depth));
   const CDLayeredLight light({{{spheroids(), depth}}}, sun, 0, 1, views);
   for (std::size_t v = 0; v + 1 < views.size(); ++v)
     for (const double phi : {0.3, 1.5, 2.8, 4.0})
@@ -143,9 +222,9 @@ TEST(CDLayeredLightIdentity, AThinLayerScattersOnce) {
                                               travel(-sun, 0), travel(way * views[v], phi)) *
                                     (depth / (4 * pi * views[v]));
         const CDStokesVector ours = way < 0 ? light.down(v, phi) : light.up(v, phi);
-        EXPECT_LT(apart(ours, once), 20 * depth * once.getScalar());
+        EXPECT_LT(apart(ours, once), again * once.getScalar());
         const CDStokesVector mirrored = way < 0 ? light.down(v, -phi) : light.up(v, -phi);
-        EXPECT_GT(apart(mirrored, once), 100 * depth * once.getScalar());  // control
+        EXPECT_GT(apart(mirrored, once), 2 * again * once.getScalar());  // control
       }
 }
 

@@ -314,6 +314,69 @@ TEST(CDRayleighLightInvariant, PhotonsFollowedOneByOneAgree) {
   }
 }
 
+// A sun that grazes the top. What comes in must go out over white ground, and what the sun makes along a line must be what
+// the line's sun would make along the sun's (Helmholtz), where the grazing direction is a line of sight, which no beam
+// between two nodes disturbs. 2e-6 of the flux is what the nodes keep of the logarithm at the top, 1e-5 of the radiance
+// what they keep at the flattest lines; all radiances are positive.
+TEST(CDRayleighLightInvariant, AGrazingSun) {
+  for (const double depth : {0.001, 0.05, 0.5, 2.0, 16.0}) {
+    const CDRayleighAtmosphere air(depth, 0.03);
+    for (const double sun : {0.03, 0.003, 1e-4, 1e-5, 1e-7, 1e-9}) {
+      const CDRayleighLight light(air, sun, 1, pi);
+      EXPECT_NEAR(light.diffuseUp() / (pi * sun), 1, 2e-6) << depth << ' ' << sun;
+      for (const double mu : {1e-6, 1e-3, 0.02, 0.5, 1.0}) {
+        const CDRayleighLight other(air, mu, 1, pi);
+        for (const double phi : {0.0, 1.0, 3.0}) {
+          const auto azimuth = CDRayleighLight::Azimuth::fromRadians(phi);
+          const double there = light.up(mu, azimuth).getScalar() / sun,
+                       back = other.up(sun, azimuth).getScalar() / mu;
+          EXPECT_NEAR(there / back, 1, 1e-5) << depth << ' ' << sun << ' ' << mu;
+          EXPECT_GT(light.up(mu, azimuth).getScalar(), 0);
+          EXPECT_GE(light.down(mu, azimuth).getScalar(), 0);
+          EXPECT_GE(light.down(mu, azimuth, depth / 2).getScalar(), 0);
+        }
+      }
+    }
+  }
+  // control: another sun than the one asked for does not keep the balance
+  const CDRayleighAtmosphere air(0.05);
+  EXPECT_GT(std::abs(CDRayleighLight(air, 1.001e-4, 1, pi).diffuseUp() / (pi * 1e-4) - 1),
+            2e-6);
+}
+
+// Suns that are treated apart and suns that are not meet: 0.05 of the optical depth is the border, and the change across
+// it is that of the sun, a relative 1e-9, and twice the 1e-9 that the nodes leave of a beam.
+TEST(CDRayleighLightIdentity, TheTwoWaysOfABeamMeet) {
+  for (const double depth : {0.5, 2.0, 16.0}) {
+    const CDRayleighAtmosphere air(depth, 0.03);
+    const double border = 0.05 * depth;
+    const CDRayleighLight low(air, border * (1 - 1e-9), 0.3, pi), high(air, border, 0.3, pi);
+    for (const double mu : {0.005, 0.1, 0.9}) {
+      const auto azimuth = CDRayleighLight::Azimuth::fromRadians(1);
+      for (const double at : {0.0, 0.01 * depth, 0.5 * depth, depth})
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_NEAR(low.down(mu, azimuth, at).getStokes(k),
+                      high.down(mu, azimuth, at).getStokes(k), 2e-9);
+          EXPECT_NEAR(low.up(mu, azimuth, at).getStokes(k),
+                      high.up(mu, azimuth, at).getStokes(k), 2e-9);
+        }
+      EXPECT_NEAR(low.source(0.3 * depth).a, high.source(0.3 * depth).a, 2e-9);
+    }
+    EXPECT_NEAR(low.diffuseDown(), high.diffuseDown(), 2e-9);
+    EXPECT_NEAR(low.diffuseUp(), high.diffuseUp(), 2e-9);
+  }
+}
+
+// So little air overhead that its square is zero in double precision.
+TEST(CDRayleighLightIdentity, TheSmallestDepthIsTheTop) {
+  const CDRayleighLight light(CDRayleighAtmosphere(0.5), 0.6, 0.2, pi);
+  const auto azimuth = CDRayleighLight::Azimuth::fromRadians(1);
+  for (const double depth : {5e-324, 1e-300, 1e-40}) {
+    EXPECT_EQ(light.up(0.5, azimuth, depth).getScalar(), light.up(0.5, azimuth, 0).getScalar());
+    EXPECT_LT(light.down(0.5, azimuth, depth).getScalar(), 1e-39);
+  }
+}
+
 TEST(CDRayleighLightInvariant, RefusesTheImpossible) {
   for (const double depth : {0.0, -1.0, 17.0, std::nan("")})
     EXPECT_THROW(CDRayleighAtmosphere{depth}, CDMathError);

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "light/CDError.hpp"
 
@@ -90,6 +93,7 @@ TEST(CDScattererIdentity, RayleighIsWhatTheChapterSays) {
 TEST(CDScattererIdentity, FunctionsBecomeTermsAndFunctionsAgain) {
   const auto odd = [](double c) {
     CDScatteringMatrix f = rayleighScatterer(0.2).matrix(c);
+    f.a2 *= 0.4, f.a3 *= 0.4, f.a4 *= 0.4, f.b1 *= 0.4;  // leaves room for what follows
     f.a1 += 0.2 * c * c * c, f.b2 = 0.3 * (1 - c * c) * c;
     return f;
   };
@@ -146,4 +150,66 @@ TEST(CDScattererInvariant, RefusesWhatIsNoScatterer) {
   EXPECT_NE(refused("# convention: dehaan\n" + columns + first + "1,-3,0,0,0,0,0\n"), "");
   EXPECT_THROW(henyeyGreensteinScatterer(1), CDMathError);
   EXPECT_THROW(CDScatterer({}), CDMathError);
+}
+
+// Every constant is bounded, at its place: Rayleigh's with one of them changed, in its own row, to something finite that no
+// particles have. The message names file, line and column, or file and angle.
+TEST(CDScattererInvariant, EveryConstantIsBounded) {
+  const std::vector<std::string> names{"alpha1", "alpha2", "alpha3",
+                                       "alpha4", "beta1",  "beta2"};
+  const auto read = [&](std::size_t row, std::size_t column, const std::string& value) {
+    std::vector<std::vector<std::string>> cells{
+        {"1", "0", "0", "0", "0", "0"},
+        {"0", "0", "0", "1.5", "0", "0"},
+        {"0.5", "3", "0", "0", "1.224744871391589", "0"}};
+    if (column < 6) cells[row][column] = value;
+    std::string text = "# convention: dehaan\n" + columns;
+    for (std::size_t l = 0; l < 3; ++l) {
+      text += std::to_string(l);
+      for (const std::string& cell : cells[l]) text += "," + cell;
+      text += "\n";
+    }
+    try {
+      CDScatterer::read(tableOf(text));
+    } catch (const CDInputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(read(2, 6, ""), "");  // unchanged
+  for (std::size_t column = 0; column < 6; ++column)
+    for (const char* value : {"1e20", "-1e20", "1e30", "1e308", "5.1"}) {
+      const std::string told = read(2, column, value);
+      EXPECT_NE(told.find("constants.csv"), std::string::npos) << names[column] << value;
+      EXPECT_NE(told.find("line 5"), std::string::npos) << told;
+      EXPECT_NE(told.find(names[column]), std::string::npos) << told;
+    }
+  // within 2 l + 1 each, but no particles': found at an angle
+  for (const auto& [row, column, value] :
+       std::vector<std::tuple<std::size_t, std::size_t, std::string>>{{2, 0, "-4"},
+                                                                      {2, 1, "4.9"},
+                                                                      {2, 2, "2"},
+                                                                      {1, 3, "2.9"},
+                                                                      {2, 4, "3"},
+                                                                      {2, 4, "-3"},
+                                                                      {2, 5, "2"}}) {
+    const std::string told = read(row, column, value);
+    EXPECT_NE(told.find("constants.csv"), std::string::npos) << names[column] << value;
+    EXPECT_NE(told.find("degrees"), std::string::npos) << told;
+  }
+  // control: a small change of the same constants is let pass
+  EXPECT_EQ(read(2, 5, "1e-4"), "");
+  EXPECT_EQ(read(2, 1, "2.9995"), "");
+}
+
+// A peak between the degrees is found as well: a narrow dip of the phase function of many terms.
+TEST(CDScattererInvariant, ADipBetweenTheDegreesIsFound) {
+  const auto dip = [](double depth) {
+    return [depth](double c) {
+      const double x = (std::acos(c) * 180 / std::numbers::pi - 90.5) / 0.15;
+      return CDScatteringMatrix{1 - depth * std::exp(-x * x), 0, 0, 0, 0, 0};
+    };
+  };
+  EXPECT_THROW(CDScatterer(dip(1.2), 900), CDMathError);
+  EXPECT_NO_THROW(CDScatterer(dip(0.8), 900));
 }

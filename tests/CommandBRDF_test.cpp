@@ -212,6 +212,14 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
                 .out.find("sigma        roughness, standard deviation of the facet slopes "
                           "[rad]: 1e-06 to 10"),
             std::string::npos);
+  // what holds with some settings is promised with these, and with a small letter
+  EXPECT_NE(list.find("torrance-sparrow   P-re"), std::string::npos) << list;
+  EXPECT_NE(list.find("lambertian         --RE"), std::string::npos) << list;
+  const std::string described = malusIn(scratch.path, "brdf --describe torrance-sparrow").out;
+  EXPECT_NE(described.find("reciprocal: with diffuse=none or diffuse=reciprocal; never returns "
+                           "more than it receives: with diffuse=none shadowing=v-groove or "),
+            std::string::npos)
+      << described;
 }
 
 // At the horizon the answer is the limit: the neighbours' shadow shrinks as the projected area does.

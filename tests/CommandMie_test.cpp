@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "ExtremeNumbers.hpp"
 #include "Program.hpp"
 #include "light/CDTable.hpp"
 #include "world/CDScatterer.hpp"
@@ -213,4 +214,28 @@ TEST(CommandMieInvariant, BadInputIsOneLineAndExitCodeTwo) {
       scratch.path, "sky --tau 0.1 --mu0 0.5 --mu 0.5 --aerosol albedo.csv --aerosol-tau 0.1");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("single_scattering_albedo"), std::string::npos) << outcome.err;
+}
+
+TEST(CommandMieInvariant, ExtremeNumbersAreAnsweredOrRefused) {
+  const Scratch scratch;
+  const auto ask = [&](const std::vector<std::pair<std::string, std::string>>& flags) {
+    for (const auto& [flag, value] : flags) {
+      std::string question = "mie";
+      for (const auto& [other, text] : flags)
+        if (other != flag) question += " " + other + " " + text;
+      expectFiniteOrRefused(scratch.path, question, flag);
+    }
+  };
+  ask({{"--n", "1.5"}, {"--k", "0.01"}, {"--medium-n", "1.1"}, {"--x", "2"}});
+  ask({{"--n", "1.5"}, {"--wavelength-nm", "500"}, {"--radius-um", "0.1"}});
+  ask({{"--n", "1.5"},
+       {"--wavelength-nm", "900"},
+       {"--effective-radius-um", "0.2"},
+       {"--effective-variance", "0.07"},
+       {"--largest-radius-um", "2"}});
+  ask({{"--n", "1.5"},
+       {"--wavelength-nm", "900"},
+       {"--median-radius-um", "0.1"},
+       {"--deviation", "1.5"},
+       {"--largest-radius-um", "2"}});
 }

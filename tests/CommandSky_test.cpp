@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "ExtremeNumbers.hpp"
 #include "Program.hpp"
 #include "light/CDTable.hpp"
 #include "world/CDSky.hpp"
@@ -327,4 +328,71 @@ TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
   const Outcome twice = malusIn(scratch.path, "sky --points two.csv");
   EXPECT_EQ(twice.code, 2);
   EXPECT_EQ(twice.err, "two.csv: depolarisation: stands beside depolarization; give it once\n");
+}
+
+// Each number of a question by itself, the others as they should be.
+TEST(CommandSkyInvariant, ExtremeNumbersAreAnsweredOrRefused) {
+  const Scratch scratch;
+  const std::vector<std::pair<std::string, std::string>> air{
+      {"--tau", "0.3"},     {"--depolarization", "0.03"},
+      {"--albedo", "0.5"},  {"--mu0", "0.6"},
+      {"--mu", "0.4"},      {"--phi", "30"},
+      {"--tau-obs", "0.1"}, {"--irradiance", "2"}};
+  const auto without = [](const auto& flags, const std::string& left_out) {
+    std::string text;
+    for (const auto& [flag, value] : flags)
+      if (flag != left_out) text += " " + flag + " " + value;
+    return text;
+  };
+  for (const auto& [flag, value] : air) {
+    expectFiniteOrRefused(scratch.path, "sky" + without(air, flag), flag);
+    expectFiniteOrRefused(scratch.path, "sky --direction up" + without(air, flag), flag);
+  }
+  for (const std::string flag : {"--tau", "--albedo", "--mu0"})
+    expectFiniteOrRefused(
+        scratch.path,
+        "sky --fluxes" + without(
+                             std::vector<std::pair<std::string, std::string>>{
+                                 {"--tau", "0.3"}, {"--albedo", "1"}, {"--mu0", "0.6"}},
+                             flag),
+        flag);
+  for (const std::string flag : {"--wavelength-nm", "--pressure-hPa"})
+    expectFiniteOrRefused(
+        scratch.path,
+        "sky --mu0 0.6 --mu 0.4" +
+            without(std::vector<std::pair<std::string, std::string>>{{"--wavelength-nm", "500"},
+                                                                     {"--pressure-hPa", "900"}},
+                    flag),
+        flag);
+  put(scratch / "dust.csv",
+      "# convention: dehaan\nl,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,0,0,0\n"
+      "1,1,0,0,0,0,0\n");
+  const std::vector<std::pair<std::string, std::string>> dusty{
+      {"--tau", "0.1"},      {"--mu0", "0.6"},         {"--mu", "0.4"},
+      {"--tau-obs", "0.05"}, {"--aerosol-tau", "0.1"}, {"--aerosol-albedo", "0.9"}};
+  for (const auto& [flag, value] : dusty)
+    expectFiniteOrRefused(scratch.path, "sky --aerosol dust.csv" + without(dusty, flag), flag);
+}
+
+// A grazing sun through the command: over white ground all comes back.
+TEST(CommandSkyInvariant, AGrazingSunIsBalanced) {
+  const Scratch scratch;
+  for (const char* sun : {"1e-9", "2e-5", "1e-4"}) {
+    const Outcome outcome =
+        malusIn(scratch.path, std::string("sky --tau 0.05 --albedo 1 --fluxes --mu0 ") + sun);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const CDTable fluxes = tableOf(outcome.out);
+    EXPECT_NEAR(fluxes.number(0, "flux_up") / fluxes.number(0, "flux_in"), 1, 2e-6) << sun;
+  }
+}
+
+TEST(CommandSkyInvariant, AnEmptyTextIsNoFlag) {
+  const Scratch scratch;
+  for (const char* flag : {"--aerosol", "--points", "--picture", "--albedo", "--out"}) {
+    const Outcome outcome =
+        malusIn(scratch.path, std::string("sky --tau 0.3 --mu0 0.6 --mu 0.4 ") + flag + " ''");
+    EXPECT_EQ(outcome.code, 2) << flag;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(flag), std::string::npos) << outcome.err;
+  }
 }

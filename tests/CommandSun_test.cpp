@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "ExtremeNumbers.hpp"
 #include "Program.hpp"
 #include "light/CDTable.hpp"
 
@@ -94,4 +95,14 @@ TEST(CommandSunInvariant, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "suns.csv"));
   EXPECT_NE(malusIn(scratch.path, "sun --points bad.csv").err.find("bad.csv:3"),
             std::string::npos);
+}
+
+TEST(CommandSunInvariant, ExtremeNumbersAreAnsweredOrRefused) {
+  const Scratch scratch;
+  const std::string time = "sun --time 2001-06-10T17:08:00Z ";
+  expectFiniteOrRefused(scratch.path, time + "--lon -77.61", "--lat");
+  expectFiniteOrRefused(scratch.path, time + "--lat 43.16", "--lon");
+  expectFiniteOrRefused(scratch.path,
+                        time + "--lat 43.16 --lon -77.61 --until 2001-06-10T18:08:00Z",
+                        "--step-min");
 }
