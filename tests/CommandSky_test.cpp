@@ -33,11 +33,10 @@ std::string questions(const CDTable& printed) {
   return text;
 }
 
-const std::string spheroids = "'" +
-                              (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
-                               "scenes/data/aerosol-spheroids.csv")
-                                  .string() +
-                              "'";
+const std::string spheroids =
+    fmt::format("'{}'", (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() /
+                         "scenes/data/aerosol-spheroids.csv")
+                            .string());
 }  // namespace
 
 // Siewert 2000, problem IIA, through files: half a unit of the sixth digit, and 1e-6 for flat lines of sight.
