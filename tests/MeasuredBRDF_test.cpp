@@ -441,7 +441,7 @@ TEST(MeasuredBRDFIdentity, BrokenTextIsRefused) {
         {"0,0,0,550,x\n", "f00 = x: is not a number"},
         {"0,0,0,550,1\n0,0,90,550,1\n", "phi_d: leaves out more than 120 deg of the circle"},
         {"0,0,0,550,1\n1,1,100,551,1\n2,2,200,552,1\n3,3,300,553,1\n",
-         "4 rows: do not form a grid, which would have 256"}}) {
+         "4 rows: do not form a grid, which would have 4 x 4 x 4 x 4"}}) {
     const std::string message = refusal([&] { from(scratch, head + rows); });
     EXPECT_NE(message.find(problem), std::string::npos) << message;
   }

@@ -28,7 +28,7 @@ json soundScene() {
     "geometry": [{"obj": "t.obj", "material": "paint", "scale": 1, "rotate_deg": [0, 0, 0], "translate_m": [0, 0, 1]},
                  {"ground": {"z_m": 0, "material": "paint"}}],
     "materials": {"paint": {"model": "lambertian", "reflectance": 0.3}},
-    "sun": {"zenith_deg": 30, "azimuth_deg": 90, "irradiance_W_m2_nm": 1},
+    "sun": {"zenith_deg": 30, "azimuth_deg": 90, "irradiance_W_m2_nm": 1, "half_angle_deg": 0.2665},
     "sky": {"model": "uniform", "radiance_W_m2_sr_nm": 0.05},
     "sensor": {"kind": "framing", "width": 8, "height": 8, "focal_length_mm": 15, "pixel_pitch_um": 400,
       "polarimeter": {"cameras": [{"name": "P0", "polarizer_deg": 0}], "recover": []}},
@@ -363,4 +363,16 @@ TEST(RefusalsIdentity, EveryNumberOfTheSchemaHasAnInterval) {
       };
   look(sceneSchema(), "");
   EXPECT_GT(numbers, 25u);
+}
+
+// The script that makes a fresh machine removes files below a directory: never below one that it has not made.
+TEST(RefusalsIdentity, TheFreshMachineIsNotMadeOfThisOne) {
+  const Scratch scratch;
+  put(scratch / "etc/apt/sources.list", "mine");
+  const std::string script =
+      "'" + (std::filesystem::current_path() / "tests/fresh-machine.sh").string() + "' ";
+  const Outcome outcome = runIn(scratch.path, "sh " + script + scratch.path.string());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("fresh-machine.sh"), std::string::npos) << outcome.err;
+  EXPECT_EQ(contents(scratch / "etc/apt/sources.list"), "mine");
 }
