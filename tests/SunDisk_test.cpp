@@ -8,6 +8,7 @@
 
 #include "Worlds.hpp"
 #include "matter/BRDFDiffuse.hpp"
+#include "matter/BRDFGlossyCoating.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
 #include "matter/Fresnel.hpp"
 
@@ -367,6 +368,31 @@ TEST(SunDiskInvariant, NegativeControlsOfTheGlint) {
   fault.sun_sampled_twice = true;
   const CDWorld disk = sunlit(worldOf(plate(glass, 1)), glint.toSun());
   EXPECT_GT(estimate(disk, fault, glint.ray(), 500).mean[0], 1.8 * expected);
+}
+
+// Paint that is matt under a smooth gloss, looked at beside the sun's image: the matt part is lit as by a point, and no
+// sample is far from it, with one ray and with many. The gloss draws its rays where the sun is not.
+TEST(SunDiskInvariant, MattPaintUnderASmoothGloss) {
+  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
+  const auto paint = std::make_shared<BRDFGlossyCoating>(all(1.5), all(0.5), 1e-6);
+  const Glint beside{50 * degree, 4 * degree};
+  const CDWorld world = sunlit(worldOf(plate(paint, 1)), beside.toSun());
+  const double expected =
+      paint->getScore(CDBRDFGeometry::fromDirections(beside.toSun(), beside.toViewer()));
+  EXPECT_GT(expected, 0.05) << "negative control: there is a matt part";
+  for (const auto& options :
+       {rays(CDSampling::importance, {1}), rays(CDSampling::gridRotated, {1}),
+        rays(CDSampling::importance, {33})}) {
+    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
+                                  options);
+    for (std::uint64_t pixel = 0; pixel < 1000; ++pixel) {
+      const CDRadiometry::Ray ray = beside.ray(pixel);
+      std::array<double, 4> out{};
+      radiometry.radiance({&ray, 1}, out);
+      ASSERT_NEAR(out[0], expected,
+                  0.01 * expected);  // the cosine varies by 0.6 % over the disk
+    }
+  }
 }
 
 // The answer depends on the ray alone: alone, or among others in another order.
