@@ -240,7 +240,8 @@ const std::vector<BadScene> bad_scenes{
      "has no light"},
     {R"({"sun": {"time": "2001-06-10T17:06:00Z"}})",
      "does not say in one way where the sun stands"},
-    {R"({"bands": {"wavelength_nm": [550, 450]}})", "bands"},
+    {R"({"bands": {"wavelength_nm": [450, 550, 450]}})",
+     "bands = {\"wavelength_nm\":[450,550,450]}: has the same band at 450 nm twice"},
     {R"({"bands": {"wavelength_nm": [-550]}})",
      "bands.wavelength_nm[0] = -550 nm: is not allowed here; give"},
     {R"({"malus": 2})",
@@ -742,7 +743,8 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(SceneIdentity, BandsComeInAnyOrderAndUnderTheirNames) {
   json scene = smallScene(16, 4);
-  scene["materials"]["ground"] = {{"model", "lambertian"}, {"reflectance", 0.5}};
+  scene["materials"]["ground"] = json::parse(R"({"model": "lambertian",
+      "reflectance": {"wavelength_nm": [380, 720], "values": [0.1, 0.5]}})");
   scene["geometry"] = json::parse(R"([{"ground": {"material": "ground"}}])");
   scene["bands"] = json::parse(R"([{"center_nm": 650, "name": "red"}, {"center_nm": 550},
       {"center_nm": 550, "fwhm_nm": 100, "name": "pan"}, {"center_nm": 450}])");
