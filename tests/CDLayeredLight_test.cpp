@@ -301,6 +301,24 @@ TEST(CDLayeredLightInvariant, SunAndViewerMayBeExchanged) {
   }
 }
 
+// A layer that rounding cannot tell from a boundary is none, wherever it lies; one that it can is there.
+TEST(CDLayeredLightInvariant, ALayerThinnerThanRoundingIsLeftOut) {
+  const CDScatterer air = rayleighScatterer(0.03);
+  const CDParticles sky{air, 0.3, 1}, trace{air, 1e-18, 1}, soot{air, 1e-3, 0};
+  const CDLayeredAccuracy few{8, -1};
+  const auto up = [&](const std::vector<CDAirLayer>& layers) {
+    const CDLayeredLight light(layers, 0.6, 0.2, pi, {0.7}, few, {0.1, 0.3});
+    EXPECT_LT(apart(light.down(0, 1), light.down(0, 1, 1)), 1e-15);  // the ground
+    return light.up(0, 1).getScalar();
+  };
+  const double alone = up({{sky}});
+  EXPECT_NEAR(up({{trace}, {sky}}), alone, 1e-13);
+  EXPECT_NEAR(up({{sky}, {trace}}), alone, 1e-13);
+  EXPECT_NEAR(up({{trace}, {sky}, {trace}, {trace}}), alone, 1e-13);
+  const CDLayeredLight dark({{sky}, {soot}}, 0.6, 0.2, pi, {0.7}, few);
+  EXPECT_LT(dark.up(0, 1).getScalar(), alone - 1e-5);  // control
+}
+
 TEST(CDLayeredLightInvariant, RefusesTheImpossible) {
   const CDScatterer air = rayleighScatterer(0);
   EXPECT_THROW(CDLayeredLight({}, 0.5, 0, 1, {0.5}), CDMathError);
