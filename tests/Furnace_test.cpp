@@ -1,0 +1,313 @@
+// White furnaces for every sampling and number of rays, and the trial that warns of those that fail
+// (nw/imaging/ImportanceSampling.nw).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "Worlds.hpp"
+#include "imaging/ImportanceSampling.hpp"
+#include "matter/BRDFDiffuse.hpp"
+#include "matter/BRDFTorranceSparrow.hpp"
+#include "matter/Emission.hpp"
+
+using namespace malus;
+using namespace malus::testing;
+
+namespace {
+constexpr double pi = std::numbers::pi, degree = pi / 180;
+using Model = std::shared_ptr<const CDBRDFModel>;
+
+Model matt(double reflectance) {
+  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
+}
+Model facets(double n, double k, double sigma, CDDiffuseTerm diffuse = CDDiffuseTerm::none) {
+  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
+  return std::make_shared<BRDFTorranceSparrow>(all(n), all(k), all(sigma),
+                                               CDTorranceSparrowOptions{.diffuse = diffuse});
+}
+Quad floorOf(const Model& model, double half = 1) {
+  return {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model};
+}
+CDWorld plate(const Model& model) { return worldOf({floorOf(model)}, uniformSky(1)); }
+
+// As bright everywhere as the uniform sky, without saying so: sampling by the sky's density has its turn.
+class EvenSky : public CDSky {
+ public:
+  EvenSky() : CDSky(oneBand()) {}
+  void radiance(const CDVector&, CDSpectralVector<CDStokesVector>& out) const override {
+    out[0] = CDStokesVector(1);
+  }
+  bool polarized() const override { return false; }
+  std::string description() const override { return "an even sky for tests"; }
+};
+
+struct Candidate {
+  const char* name;
+  CDRadiometryOptions options;
+  bool grid;  // a fixed set of directions: may be biased, and must then be reported
+};
+const std::vector<Candidate>& candidates() {
+  using enum CDSampling;
+  static const std::vector<Candidate> all{
+      {"random, exact", {.sampling = random, .solid_angle = CDSolidAngle::exact}, false},
+      {"random, equal", {.sampling = random, .solid_angle = CDSolidAngle::equal}, false},
+      {"grid", {.sampling = grid}, true},
+      {"grid-rotated", {.sampling = gridRotated}, true},
+      {"adaptive", {.sampling = adaptive}, true},
+      {"importance", {.sampling = importance}, false},
+      {"importance without sobol", {.sampling = importance, .sobol = false}, false},
+      {"importance without mis", {.sampling = importance, .mis = false}, false},
+      {"importance, plain", {.sampling = importance, .sobol = false, .mis = false}, false}};
+  return all;
+}
+const std::vector<int> counts{2,  3,  4,  5,  6,  7,  8,  9,  10, 11,  12,  13,  14,  15,  16,
+                              17, 24, 25, 32, 33, 61, 64, 91, 92, 121, 122, 128, 129, 256, 400};
+
+// Enough pixels for the mean of random directions to show one per cent, and a grid's turn to be averaged.
+std::uint64_t pixelsFor(int rays) {
+  return std::max<std::uint64_t>(16, 40000 / static_cast<std::uint64_t>(rays - 1));
+}
+const CDRadiometry::Ray aslant = looking({0.1, 0.2, 0}, {0.5, 0.2, 1}, {0, 1, 0});
+
+// Inside of a globe, radius 1, whose cap above the opening is missing: all form factors are areas.
+CDWorld globe(double opening_rad, const Model& model) {
+  constexpr std::uint32_t rows = 60, columns = 120;
+  CDMesh mesh;
+  mesh.facets = mesh.materials = {"globe"};
+  for (std::uint32_t i = 0; i <= rows; ++i)
+    for (std::uint32_t j = 0; j < columns; ++j)
+      mesh.vertices.push_back(CDVector::fromAngles(opening_rad + (pi - opening_rad) * i / rows,
+                                                   2 * pi * j / columns));
+  for (std::uint32_t i = 0; i < rows; ++i)
+    for (std::uint32_t j = 0; j < columns; ++j) {
+      const std::uint32_t a = i * columns + j, b = i * columns + (j + 1) % columns;
+      mesh.triangles.push_back({a, b + columns, a + columns, 0, 0});
+      mesh.triangles.push_back({a, b, b + columns, 0, 0});
+    }
+  CDGeometryBuilder builder;
+  builder.addMesh(mesh, {});
+  CDWorld world;
+  world.grid = oneBand();
+  world.geometry = std::move(builder).build();
+  world.materials = {{"globe", model}};
+  world.sky = uniformSky(1);
+  return world;
+}
+const CDRadiometry::Ray into = looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0});
+
+bool reported(const CDWorld& world, const CDRadiometryOptions& options) {
+  return trySampling(world, options).all_bounces > CDSamplingTrial::most_bias;
+}
+}  // namespace
+
+// The criterion, before any number: |S0 - 1| <= 1 % (beside 5 standard errors of chance), or the user is told so. And he is not told
+// without cause: what is reported is off by more than 1 %. The reported numbers themselves are means over turns.
+TEST(FurnaceInvariant, AFlatWhiteCardIsWhiteOrReported) {
+  const CDWorld world = plate(matt(1));
+  std::size_t biased = 0;
+  for (Candidate candidate : candidates())
+    for (const int rays : counts) {
+      candidate.options.rays = {rays};
+      const Estimate seen = estimate(world, candidate.options, aslant, pixelsFor(rays));
+      const double off = std::abs(seen.mean[0] - 1), chance = 5 * seen.error[0];
+      if (reported(world, candidate.options)) {
+        EXPECT_TRUE(candidate.grid) << candidate.name << " " << rays;
+        EXPECT_GT(off, CDSamplingTrial::most_bias - chance) << candidate.name << " " << rays;
+        ++biased;
+      } else {
+        EXPECT_LT(off, CDSamplingTrial::most_bias + chance) << candidate.name << " " << rays;
+        EXPECT_LT(chance, 0.03) << "the comparison means something";
+      }
+    }
+  EXPECT_GT(biased, 40u) << "negative control: the thesis's grids are biased with few rays";
+}
+
+// Directions from the cosine lobe make a white card white for every number of rays, to single precision.
+TEST(FurnaceIdentity, ImportanceSamplingIsExactOnAWhiteCard) {
+  for (const bool sobol : {true, false})
+    for (const int rays : counts)
+      EXPECT_NEAR(estimate(plate(matt(1)),
+                           {.sampling = CDSampling::importance, .rays = {rays}, .sobol = sobol},
+                           aslant, 4)
+                      .mean[0],
+                  1, 1e-6)
+          << rays;
+}
+
+// Half of the directions drawn from the sky: unbiased, and no more than that.
+TEST(FurnaceInvariant, AnEvenSkyThatDoesNotSaySoIsEvenAsWell) {
+  const CDWorld world = worldOf({floorOf(matt(1))}, std::make_shared<EvenSky>());
+  for (const bool sobol : {true, false})
+    for (const bool mis : {true, false})
+      for (const int rays : {2, 3, 8, 17, 64, 91}) {
+        const Estimate seen = estimate(
+            world,
+            {.sampling = CDSampling::importance, .rays = {rays}, .sobol = sobol, .mis = mis},
+            aslant, pixelsFor(rays));
+        EXPECT_NEAR(seen.mean[0], 1, 5 * seen.error[0] + 1e-6) << rays << sobol << mis;
+        EXPECT_LT(5 * seen.error[0], 0.02);
+      }
+}
+
+// One to eight reflections in a white globe with a share a of its area open return 1 - (1 - a)^m of the sky. 7200 flat facets
+// stand for the globe: 2e-3.
+TEST(FurnaceInvariant, AHollowReturnsWhatItMustReflectionByReflection) {
+  const double opening = 70 * degree, share = (1 - std::cos(opening)) / 2;
+  const CDWorld world = globe(opening, matt(1));
+  for (const Candidate& candidate : candidates()) {
+    if (candidate.grid) continue;
+    double left = 1;
+    for (std::size_t m = 1; m <= 8; ++m) {
+      left *= 1 - share;
+      CDRadiometryOptions options = candidate.options;
+      options.rays.assign(m, 2), options.rays[0] = 33;
+      const Estimate seen = estimate(world, options, into, 400);
+      EXPECT_NEAR(seen.mean[0], 1 - left, 5 * seen.error[0] + 2e-3) << candidate.name << m;
+      if (m <= 3) {
+        EXPECT_GT(std::abs(seen.mean[0] - 1 + left * (1 - share)), 5 * seen.error[0] + 2e-3)
+            << "negative control: one reflection more; " << candidate.name << m;
+      }
+      EXPECT_FALSE(reported(world, options));
+    }
+  }
+}
+
+// A closed box whose walls reflect nine tenths and glow with the rest is black at every depth: after m reflections
+// 1 - 0.9^(m+1) of the black body's light is there, the same from everywhere, so that a grid has no edge to miss. Its bias counts
+// once for each reflection: 128 directions from every hit are off by 0.9 % each time, which no single plate would tell. The
+// criterion is that of the card.
+TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
+  constexpr double temperature_K = 6000, reflectance = 0.9;
+  const Model wall = matt(reflectance);
+  std::array<Model, 6> walls;
+  walls.fill(wall);
+  CDWorld box = worldOf(boxOf(walls));
+  for (CDMaterial& material : box.materials)
+    material.emission = std::make_shared<CDEmission>(*wall, temperature_K);
+  const double black = planckRadiance(550, temperature_K);
+  const CDRadiometry::Ray inside{
+      {0.1, 0.05, 0}, normalized({0.2, 0.7, -0.5}), {1, 0, 0}, 0, 0, 0};
+  const std::vector<std::vector<int>> lists{
+      {2, 2},     {91, 2}, {33, 3, 2}, {129},
+      {129, 129}, {500},   {500, 500}, {3, 2, 2, 2, 2, 2, 2, 2}};
+  std::size_t right = 0, wrong = 0;
+  for (const Candidate& candidate : candidates())
+    for (const auto& rays : lists) {
+      CDRadiometryOptions options = candidate.options;
+      options.rays = rays;
+      const double expected = black * (1 - std::pow(reflectance, double(rays.size()) + 1));
+      const bool adaptive = options.sampling == CDSampling::adaptive;
+      if (adaptive && rays.size() > 2) continue;  // 24 directions from each hit, at least
+      double paths = 1;
+      for (const int count : rays) paths *= count - 1;
+      const auto pixels =
+          std::uint64_t(std::clamp(40000 / paths, adaptive ? 1.0 : 4.0, 2000.0));
+      const Estimate seen = estimate(box, options, inside, pixels);
+      const double off = std::abs(seen.mean[0] / expected - 1),
+                   chance = 5 * seen.error[0] / expected;
+      if (reported(box, options)) {
+        EXPECT_TRUE(candidate.grid) << candidate.name;
+        wrong += off > CDSamplingTrial::most_bias / 2;
+      } else {
+        EXPECT_LT(off, CDSamplingTrial::most_bias + chance)
+            << candidate.name << rays[0] << rays.size();
+        right += candidate.grid;
+      }
+    }
+  EXPECT_GE(right, 6u) << "{129}, {500} and {500, 500} are right for both grids";
+  EXPECT_GE(wrong, 8u) << "negative control: {2, 2}, {91, 2}, {33, 3, 2} and eight reflections "
+                          "are wrong for both";
+  EXPECT_TRUE(reported(box, {.sampling = CDSampling::gridRotated, .rays = {129, 129}}));
+  EXPECT_FALSE(reported(box, {.sampling = CDSampling::gridRotated, .rays = {129}}));
+}
+
+// A groove of two white walls at a right angle: what is missing after eight reflections is less than 0.5^8.
+TEST(FurnaceInvariant, AGrooveIsWhiteAfterEightReflections) {
+  const CDWorld world = worldOf({{{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}, matt(1)},
+                                 {{0, -9, 0}, {0, -9, 9}, {0, 9, 9}, {0, 9, 0}, matt(1)}},
+                                uniformSky(1));
+  const auto ray = looking({-0.4, 0.1, 0}, {-0.6, 0.2, 1}, {0, 1, 0});
+  CDRadiometryOptions options;
+  options.rays = {17, 2, 2, 2, 2, 2, 2, 2};
+  const Estimate seen = estimate(world, options, ray, 1000);
+  EXPECT_NEAR(seen.mean[0], 1, 5 * seen.error[0] + std::pow(0.5, 8));
+  options.rays = {17};
+  EXPECT_LT(estimate(world, options, ray, 100).mean[0], 0.9)
+      << "negative control: one reflection";
+}
+
+// A surface however smooth returns its directional hemispherical reflectance of an even sky, and tends to Fresnel's
+// reflectance at its own zenith angle. The draws' weights are exact but for shadowing; 5 standard errors and single
+// precision, 1e-5 (the rounding of a direction, 6e-8, beside the narrowest lobe that is gathered, 1e-5, squared, and sums).
+TEST(FurnaceIdentity, SmoothSurfacesReflectTheSky) {
+  for (const double sigma : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
+    for (const double zenith : {0.0, 0.3, 0.98, 1.3}) {
+      const Model glass = facets(1.5, 0, sigma);
+      const double right = glass->getDHR(zenith).at(0);
+      for (const bool even : {true, false}) {
+        CDWorld world = plate(glass);
+        if (!even) world.sky = std::make_shared<EvenSky>();
+        const Estimate seen =
+            estimate(world, {.sampling = CDSampling::importance, .rays = {257}, .mis = false},
+                     looking({0, 0, 0}, CDVector::fromAngles(zenith, 1), {0.3, 1, 0.2}), 100);
+        EXPECT_NEAR(seen.mean[0], right, 5 * seen.error[0] + 1e-4 * right)
+            << sigma << " " << zenith;
+        EXPECT_LT(seen.error[0], 0.01 * right) << "the comparison means something";
+      }
+      const double c = std::cos(zenith),
+                   t = std::sqrt(2.25 - std::sin(zenith) * std::sin(zenith));
+      const double rs = (c - t) / (c + t), rp = (2.25 * c - t) / (2.25 * c + t);
+      if (sigma <= 1e-3) {
+        EXPECT_NEAR(right, (rs * rs + rp * rp) / 2, 1e-4) << sigma << " " << zenith;
+      }
+    }
+}
+
+// A smooth floor beside a matt wall shows the wall: the light that the wall sends along the mirrored ray, times Fresnel's
+// reflectance, polarised across the plane of incidence.
+TEST(FurnaceIdentity, SmoothSurfacesReflectTheirNeighbours) {
+  const Quad wall{{1, -40, 0}, {1, -40, 60}, {1, 40, 60}, {1, 40, 0}, matt(0.6)};
+  const double zenith = 0.9, c = std::cos(zenith), t = std::sqrt(2.25 - 1 + c * c);
+  const double rs = std::pow((c - t) / (c + t), 2),
+               rp = std::pow((2.25 * c - t) / (2.25 * c + t), 2);
+  const CDVector viewer{-std::sin(zenith), 0, c}, mirrored{std::sin(zenith), 0, c};
+  for (const double sigma : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    CDWorld world = worldOf({floorOf(facets(1.5, 0, sigma), 60), wall}, uniformSky(1));
+    CDRadiometryOptions options;
+    options.rays = {33, 17};
+    const Estimate mirror =
+        estimate(world, options, looking({0, 0, 0}, viewer, {0, 1, 0}, 0, 0.5), 400);
+    options.rays = {1025};
+    const CDRadiometry::Ray direct{{0, 0, 1e-3}, mirrored, {0, 1, 0}, 0, 0, 0};
+    const Estimate seen = estimate(world, options, direct, 16);
+    const double size = seen.mean[0] * (rs + rp) / 2;
+    EXPECT_NEAR(mirror.mean[0], size,
+                5 * std::hypot(mirror.error[0], seen.error[0]) + 3e-3 * size)
+        << sigma;
+    EXPECT_NEAR(mirror.mean[1], seen.mean[0] * (rs - rp) / 2,
+                5 * std::hypot(mirror.error[1], seen.error[0]) + 3e-3 * size)
+        << sigma;
+    EXPECT_LT(seen.mean[0], 0.7) << "negative control: the sky is brighter than the wall";
+  }
+}
+
+// What a fixed set of directions cannot see is named; what it can see is not.
+TEST(FurnaceInvariant, ANarrowLobeIsRefusedToDirectionsThatMissIt) {
+  const auto trial = [](double sigma, CDSampling sampling, int rays) {
+    return trySampling(plate(facets(1.5, 0, sigma)), {.sampling = sampling, .rays = {rays}});
+  };
+  for (const CDSampling sampling :
+       {CDSampling::random, CDSampling::grid, CDSampling::gridRotated, CDSampling::adaptive}) {
+    EXPECT_EQ(trial(1e-3, sampling, 91).unseen, "0") << int(sampling);
+    EXPECT_EQ(trial(1e-6, sampling, 91).unseen, "0") << int(sampling);
+    EXPECT_EQ(trial(0.2, sampling, 91).unseen, "") << int(sampling);
+  }
+  for (const double sigma : {0.2, 1e-3, 1e-8}) {
+    EXPECT_EQ(trial(sigma, CDSampling::importance, 2).unseen, "");
+    EXPECT_EQ(trial(sigma, CDSampling::importance, 2).all_bounces, 0);
+  }
+  EXPECT_GT(trial(0.1, CDSampling::gridRotated, 7).all_bounces, 0.01);
+  EXPECT_LT(trial(0.2, CDSampling::gridRotated, 2001).all_bounces, 0.01);
+}
