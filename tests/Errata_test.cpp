@@ -49,8 +49,22 @@ TEST(ErrataPublished, EveryFindingIsVerified) {
       {"N1", reproduceN1},   {"N2", reproduceN2},  {"N3", reproduceN3}, {"N4", reproduceN4},
       {"N5", reproduceN5},   {"N6", reproduceN6},  {"N7", reproduceN7}, {"N9", reproduceN9},
       {"N10", reproduceN10}, {"N11", reproduceN11}};
-  for (const auto& [id, function] : findings)
-    EXPECT_TRUE(named(ran(id, function), CDVerdict::differs).empty()) << id;
+  for (const auto& [id, function] : findings) {
+    // the reading nearest to the digits misses two of them (finding 3)
+    const std::set<std::string> known =
+        id == std::string("N3") ? std::set<std::string>{"digits"} : std::set<std::string>{};
+    EXPECT_EQ(named(ran(id, function), CDVerdict::differs), known) << id;
+  }
+}
+
+// A digit that the nearest reading misses, printed as that reading has it, must change the account of finding 3.
+TEST(ErrataPublished, NegativeControlTheJointFitFollowsTheDigits) {
+  const auto asPrinted = valuesOf(ran("N3", reproduceN3));
+  EXPECT_EQ(asPrinted.at("missed"), "2");
+  const Corrupted table("T7.1.csv", "33.91,-39.18,-10.48,51.2,50.2,10.2,103.2",
+                        "33.91,-39.18,-10.48,51.2,50.2,10.2,103.3");
+  const auto mended = valuesOf(ran("N3", reproduceN3, table.data));
+  EXPECT_EQ(mended.at("missed"), "1");
 }
 
 TEST(ErrataPublished, TheListHoldsAllCommittedErrataAndNoOthers) {

@@ -56,6 +56,19 @@ TEST(MeasurementsIdentity, LocalMaximaOfASine) {
   EXPECT_TRUE(localMaxima([](double x) { return x * x; }, -1, 1).empty());
 }
 
+TEST(MeasurementsIdentity, SecondaryPeakBeyondATrough) {
+  const CDCurve two = [](double x) { return gaussian(0, 1)(x) + 0.5 * gaussian(10, 1)(x); };
+  const CDSecondaryPeak right = secondaryPeak(two, 2, 15), left = secondaryPeak(two, 8, -5);
+  EXPECT_NEAR(right.peak.x, 10, peak_tolerance);
+  EXPECT_NEAR(right.rise, 1 - two(5) / two(10),
+              0.01);                            // samples, 400 of them, beside the trough
+  EXPECT_NEAR(left.peak.x, 0, peak_tolerance);  // the interval may run either way
+  EXPECT_EQ(secondaryPeak(gaussian(0, 1), 1, 5).rise, 0);
+  // a ripple of a thousandth is measured as one
+  const CDCurve ripple = [](double x) { return 10 - x + 0.01 * std::sin(200 * x); };
+  EXPECT_LT(secondaryPeak(ripple, 0, 5).rise, 0.01);
+}
+
 TEST(MeasurementsIdentity, RootOfACosineAndRefusal) {
   EXPECT_NEAR(findRoot([](double x) { return std::cos(x); }, 0, 3), std::numbers::pi / 2,
               1e-15);
