@@ -80,6 +80,14 @@ TEST(Section71Published, EveryPrintedNumberIsMetOrIsAnErratum) {
   }
 }
 
+TEST(Section71Published, NegativeControlAnotherInputOfThePlateIsSeen) {
+  const Corrupted text("text.csv", "copper.k,2.950", "copper.k,2.951");
+  EXPECT_EQ(named(ran("T7.1", reproduceT71, text.data), CDVerdict::differs),
+            (std::set<std::string>{"inputs"}));
+  const CDItem item("T7.1", ".", "validation");
+  EXPECT_THROW(printedInText(item, "copper.colour"), CDInputError);
+}
+
 TEST(Section71Published, NegativeControlOneDigitChangedIsSeen) {
   const Corrupted table("T7.2.csv", "103.58", "103.59");
   EXPECT_EQ(named(ran("T7.2", reproduceT72, table.data), CDVerdict::differs).size(), 1u);

@@ -71,7 +71,7 @@ TEST(Section72Identity, CurvesRunFromBackwardToForward) {
 }
 
 TEST(Section72Published, WhatDiffersIsWhatTheChapterTells) {
-  // sec 7.3.1, linear shift: fails for sigma .15, .2, .3; sec 7.3.2: widths at half maximum, and one forward peak
+  // sec 7.3.1, linear shift; sec 7.3.2: widths at half maximum, forward peaks and their overlay
   struct {
     const char* id;
     CDItemFunction function;
