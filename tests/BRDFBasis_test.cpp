@@ -1,4 +1,5 @@
 // A BRDF as a sum of basis functions (nw/matter/BRDFBasis.nw).
+#include "matter/BRDFBasis.hpp"
 
 #include <gtest/gtest.h>
 
