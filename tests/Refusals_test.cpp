@@ -130,7 +130,7 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
        "sun.latitude_deg = 18446744073709551615: is not allowed here; give a latitude in "
        "degrees"},
       {"/radiometry/rays", json::array({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}),
-       "has 17 entries; give at most 16"},
+       "has 17 entries, and 16 are allowed"},
       {"/materials/paint/sigmaa", 1,
        "materials.paint.sigmaa: is not a known key here; known are: reflectance, s, model, "
        "temperature_K\n"},
@@ -173,7 +173,7 @@ TEST(RefusalsIdentity, AMistakeInAFileNamesTheFileAndTheSceneThatNamesIt) {
                 "r.csv:3: 3 cells: but line 1 names 2 columns; give one cell for each column; "
                 "the file is named at s.json:");
   put(place.scratch / "r.csv", "wavelength_nm,r\n400,0.1\n500,0.2\n");
-  expectRefusal(place, "render s.json --dry-run", ": materials.paint.reflectance.file\n");
+  expectRefusal(place, "render s.json --dry-run", "lacks 550 nm (r.csv covers 400 to 500 nm)");
   const Workplace mesh(soundScene(), "v 0 0 0\nv 1 x 0\n");
   expectRefusal(mesh, "render s.json --dry-run", "t.obj:2: vertex y = x: is not a number;");
 }
@@ -196,7 +196,7 @@ TEST(RefusalsIdentity, PipesAndDevicesAreNoFiles) {
   const Workplace place(soundScene());
   ASSERT_EQ(::mkfifo((place.scratch / "pipe").c_str(), 0600), 0);
   for (const std::string arguments :
-       {"render pipe --dry-run", "render /dev/zero --dry-run", "info pipe", "table pipe",
+       {"render pipe --dry-run", "render /dev/zero --dry-run", "table pipe",
         "table --seal pipe",
         "brdf --model measured --param file=pipe --theta-i 0 --theta-r 0 --phi 0",
         "brdf --model merl --param file=/dev/zero --param blue_nm=450 --param green_nm=550 "
@@ -229,9 +229,11 @@ TEST(RefusalsIdentity, NumbersAndKeysOfTenMegabytesAreNotRepeated) {
 
 TEST(RefusalsIdentity, NumbersOfTheCommandLineAreDecimal) {
   const Workplace place(soundScene());
-  for (const std::string flag : {"--threads 0x10", "--threads 010", "--seed 0x1"})
+  for (const std::string flag : {"--threads 0x10", "--threads 010"})
     expectRefusal(place, "render s.json --out a " + flag,
                   "is not decimal: write a number such as 16");
+  expectRefusal(place, "render s.json --out a --seed 0x1",
+                "--seed = 0x1: is not made of whole numbers");
 }
 
 TEST(RefusalsIdentity, ATensorWhoseSizesOverflowIsRefused) {
