@@ -72,7 +72,7 @@ TEST(Section71Published, EveryPrintedNumberIsMetOrIsAnErratum) {
     std::size_t errata;
   } const items[] = {{"T7.1", reproduceT71, 1}, {"T7.2", reproduceT72, 1},
                      {"T7.3", reproduceT73, 1}, {"T7.4", reproduceT74, 11},
-                     {"C1", reproduceC1, 1},    {"C2", reproduceC2, 1}};
+                     {"C1", reproduceC1, 0},    {"C2", reproduceC2, 0}};
   for (const auto& [id, function, errata] : items) {
     const CDItem item = ran(id, function);
     EXPECT_EQ(named(item, CDVerdict::differs).size(), 0u) << id;

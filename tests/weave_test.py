@@ -386,6 +386,32 @@ class Errata(unittest.TestCase):
                 self.table(*rows, verdict=verdict)
 
 
+class Claims(unittest.TestCase):
+    """The table of what an item claims."""
+
+    CLAIM = {"sentence": "it falls (page 9)", "quantity": "error", "criterion": "falls", "source": "sentence", "fit": "", "unknowns": 0,
+             "repeats": "", "verdict": "differs"}
+
+    def table(self, line, **changed):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "report.json"), "w", encoding="utf-8") as file:
+                json.dump({"items": [{"id": "F1", "claims": [dict(self.CLAIM, name="a", **changed)]}]}, file)
+            page = book.Page("one", "one.nw", f"Text.\n{line}\nText.")
+            verdicts.Verdicts(folder).substitute(page, [], [])
+        return page.latex
+
+    def test_a_claim_is_a_row_and_the_page_keeps_its_lines(self):
+        latex = self.table(r"\claims{F1}")
+        self.assertEqual(latex.count("\n"), 2)
+        self.assertIn(r"\litto{F1}{F1} & it falls (page 9): error & falls (sentence) & differs \\", latex)
+        self.assertIn("fitted, 2 unknowns", self.table(r"\claims{F1}", fit="sun", unknowns=2))
+        self.assertNotIn("it falls", self.table(r"\claims{F1}", repeats="F2/a"))
+
+    def test_negative_control_an_item_that_is_not_there(self):
+        with self.assertRaisesRegex(problems.Problems, "no item of the report"):
+            self.table(r"\claims{F2}")
+
+
 class Parts(unittest.TestCase):
     """The loom's parts by themselves."""
 

@@ -1,4 +1,4 @@
-r"""Two tables of the book come from the program's report: the errata of the thesis, and its inventory.
+r"""Three tables of the book come from the program's report: the errata of the thesis, its inventory, and the claims of an item.
 
 A chapter writes one line for each misprint, between \begin{errata} and \end{errata}:
 
@@ -7,7 +7,8 @@ A chapter writes one line for each misprint, between \begin{errata} and \end{err
 The evidence is what `malus reproduce` computed for these claims. A claim that
 is no erratum stops the book, and so does an erratum of the report that has no
 line. \inventory becomes the table of all items, each with its verdicts and a
-link to where it is computed.
+link to where it is computed. \claims{ID ID} alone on a line becomes the
+table of what these items claim: sentence, criterion and verdict.
 """
 import csv
 import json
@@ -25,6 +26,9 @@ BEGIN_ERRATA = (r"{\litsmall\begin{longtable}{" + "".join(f"{ROUGH}{{{width}\\te
                 + r"}\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
 BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.28\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
                + r"}\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
+CLAIMS = re.compile(r"^\\claims\{([^}]*)\}$", re.MULTILINE)
+BEGIN_CLAIMS = (r"{\litsmall\begin{longtable}{l" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.36, .3, .14))
+                + r"}\toprule item & sentence & criterion & verdict \\ \midrule\endhead")
 END = r"\bottomrule\end{longtable}}"
 
 
@@ -70,6 +74,21 @@ class Verdicts:
             self.errata(page)
         if r"\inventory" in page.latex:
             page.latex = re.sub(r"^\\inventory$", lambda _: self.inventory(page, chapters, pages), page.latex, flags=re.MULTILINE)
+
+        page.latex = CLAIMS.sub(lambda match: self.table_of(page, match[1].split()), page.latex)
+
+    def table_of(self, page, ids):
+        """What these items claim, in their order; a row that repeats another is left out."""
+        rows, found = [], {item["id"]: item for item in self.items}
+        stop_if_any([Problem(page.source, 0, rf"\claims names {name}, which is no item of the report") for name in ids if name not in found])
+        for name in ids:
+            for claim in found[name]["claims"]:
+                if claim["repeats"]:
+                    continue
+                sentence = f"{claim['sentence']}: {claim['quantity']}" if claim["quantity"] else claim["sentence"]
+                fitted = f"; fitted, {claim['unknowns']} unknowns" if claim["fit"] else ""
+                rows.append(rf"\litto{{{name}}}{{{name}}} & {plain(sentence)} & {plain(claim['criterion'])} ({claim['source']}{fitted}) & {claim['verdict']} \\")
+        return BEGIN_CLAIMS + " ".join(rows) + END
 
     def errata(self, page):
         problems, told, lines = [], set(), page.latex.split("\n")
