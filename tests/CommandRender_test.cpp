@@ -875,7 +875,7 @@ Geolocated geolocate(const json& record, double x, double y) {
   for (std::size_t i = 0; i < 3; ++i) {
     origin[i] = double(pose["position_m"][i]);
     if (kind != "framing")
-      origin[i] += x * double(camera["column_time_s"]) * double(record["velocity_m_s"][i]);
+      origin[i] += x * double(camera["column_time_s"]) * double(pose["velocity_m_s"][i]);
   }
   const double range = -origin[2] / direction[2] * length;
   for (std::size_t i = 0; i < 3; ++i) point[i] = origin[i] + range * direction[i] / length;
