@@ -238,7 +238,7 @@ def make_scene(place):
     shutil.copy(os.path.join(scenes, "chunky-bar.obj"), os.path.join(place, "bar.obj"))
     scene["geometry"][0]["obj"] = "bar.obj"
     scene["sensor"] = {"kind": "framing", "width": 64, "height": 56, "field_of_view_deg": 36.87}
-    scene["radiometry"] = {"sampling": "grid-rotated", "rays": [24, 4], "seed": 5}
+    scene["radiometry"] = {"sampling": "importance", "rays": [24, 4], "seed": 5}
     scene["platform"]["frames"] = 2
     json.dump(scene, open(os.path.join(place, "s.json"), "w"))
 
