@@ -36,10 +36,11 @@ std::vector<float> tileOf(const CDTile& t) {
 }
 const std::vector<CDTile> tiles{{0, 0, 4, 2}, {4, 0, 6, 2}, {0, 2, 6, 4}};
 
-void writeAll(const std::filesystem::path& path, const CDCubeHeader& as = header) {
+void writeAll(const std::filesystem::path& path, const CDCubeHeader& as = header,
+              bool keep_journal = false) {
   CDCubeWriter writer(path, as);
   for (const CDTile& t : tiles) writer.write(t, tileOf(t));
-  writer.finish();
+  writer.finish(keep_journal);
 }
 std::string complaint(const std::filesystem::path& path) {
   try {
@@ -109,7 +110,7 @@ TEST(CDImageIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
   const Scratch scratch;
   CDCubeHeader odd = header;
   odd.description = "scene a}\nbands = 1\n{b";
-  writeAll(scratch / "x.img", odd);
+  writeAll(scratch / "x.img", odd, true);
   const CDCube cube = readCube(scratch / "x.img");
   EXPECT_EQ(cube.header.description, "scene a%7D%0Abands = 1%0A%7Bb");
   EXPECT_EQ(cube.header.channels, header.channels);
@@ -168,13 +169,16 @@ TEST(CDImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
 
 TEST(CDImageIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
   const Scratch scratch;
-  writeAll(scratch / "x.img");
+  writeAll(scratch / "x.img", header, true);
   const std::string before = contents(scratch / "x.img");
   CDCubeWriter again(scratch / "x.img", header, true);
   EXPECT_TRUE(again.finished(tiles[1]));
   again.finish();
   EXPECT_EQ(contents(scratch / "x.img"), before);
   EXPECT_EQ(filesBelow(scratch.path), 2u);
+  EXPECT_FALSE(CDCubeWriter(scratch / "x.img", header, true).finished(tiles[1]))
+      << "negative control: without its journal nothing vouches for the cube";
+  writeAll(scratch / "x.img", header, true);
   CDCubeHeader other = header;
   other.description += " of another scene";
   EXPECT_FALSE(CDCubeWriter(scratch / "x.img", other, true).finished(tiles[1]));

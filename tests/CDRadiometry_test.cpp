@@ -292,7 +292,8 @@ TEST(CDRadiometryPublished, LambertianCornerIsAGeometricSeries) {
     double expected = 0;
     for (std::vector<int> rays = {49}; rays.size() < 4; rays.push_back(49)) {
       expected = rho * (2 + expected) / 2 / std::cos(15 * degree);
-      const CDRadiometry radiometry(world, tracer, {.rays = rays});
+      const CDRadiometry radiometry(world, tracer,
+                                    {.sampling = CDSampling::gridRotated, .rays = rays});
       double sum = 0;
       for (std::uint64_t pixel = 0; pixel < 10; ++pixel) {
         CDRadiometry::Ray ray = looking({0.5, 0, 0}, {-0.3, 0.1, 1}, {0, 1, 0});
