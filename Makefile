@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench format dist sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench format dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -61,22 +61,10 @@ format: ## let clang-format format the chapters' code and the tests
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
 	@cmake --build $(BUILD) -j $(JOBS) --target dist
 
-sanitize: need-test ## all tests but the book's under the address and undefined-behaviour sanitizers
+sanitize: need-test ## all tests under the address and undefined-behaviour sanitizers
 	@cmake --preset sanitize $(GENERATOR) >/dev/null
 	@cmake --build build-sanitize -j $(JOBS)
 	@ctest --test-dir build-sanitize -LE book -j $(JOBS) --output-on-failure --progress
-	@tests/clean-run.sh sanitize
-
-sanitize-core: need-test ## the same for the tests that reach most code for their time (what CI runs)
-	@cmake --preset sanitize $(GENERATOR) >/dev/null
-	@cmake --build build-sanitize -j $(JOBS) --target core_tests
-	@ctest --test-dir build-sanitize -L core -j $(JOBS) --output-on-failure --progress
-
-tsan: need-test ## the tests that render and compute with several threads, under the thread sanitizer
-	@cmake --preset tsan $(GENERATOR) >/dev/null
-	@cmake --build build-tsan -j $(JOBS) --target thread_tests
-	@ctest --test-dir build-tsan -L threads -j $(JOBS) --output-on-failure --progress
-	@tests/clean-run.sh tsan
 
 MUTANTS ?= 400
 mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters (MUTANTS=400), and count those that their tests notice

@@ -144,7 +144,7 @@ class Build:
     @staticmethod
     def lean(words):
         """The compiler's line without launcher, output and warnings as errors, at the optimisation that compiles fast,
-        and with the checks of indices that the sanitizers of CI make as well."""
+        and with the checks of indices that make sanitize makes as well."""
         if words[0].endswith("ccache"):
             words = words[1:]
         output = words.index("-o")
