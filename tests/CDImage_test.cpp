@@ -174,6 +174,7 @@ TEST(CDImageIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
   CDCubeWriter again(scratch / "x.img", header, true);
   EXPECT_TRUE(again.finished(tiles[1]));
   again.finish();
+  again.removeJournal();
   EXPECT_EQ(contents(scratch / "x.img"), before);
   EXPECT_EQ(filesBelow(scratch.path), 2u);
   EXPECT_FALSE(CDCubeWriter(scratch / "x.img", header, true).finished(tiles[1]))
