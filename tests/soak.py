@@ -262,7 +262,9 @@ with tempfile.TemporaryDirectory(prefix="malus-soak-") as home:
         sys.exit("two seeds give one picture: the soak cannot fail")
     rounds = 0
     while time.time() - begin < seconds:
-        mishap = dice.choice(mishaps)
+        if rounds % len(mishaps) == 0:
+            dice.shuffle(mishaps)  # each happens as often as the others
+        mishap = mishaps[rounds % len(mishaps)]
         place = os.path.join(home, f"{rounds}")
         os.mkdir(place)
         make_scene(place)
