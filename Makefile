@@ -69,7 +69,7 @@ sanitize: need-test ## all tests under the address and undefined-behaviour sanit
 MUTANTS ?= 400
 mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters (MUTANTS=400), and count those that their tests notice
 	@cmake --build $(BUILD) -j $(JOBS) --target all
-	@tests/mutants.py $(BUILD) --count $(MUTANTS) --report validation/mutants.csv
+	@tests/mutants.py $(BUILD) --count $(MUTANTS) --report $(BUILD)/mutants.csv
 
 clang: need-test ## all tests as compiled by clang++
 	@$(NEED) clang
