@@ -3,7 +3,7 @@
 
 MAKEFLAGS += --no-print-directory
 BUILD  := build
-NEED   ?= doc/loom/need.sh
+NEED   ?= doc/weaver/need.sh
 JOBS   ?= $(shell nproc)
 GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 
@@ -55,7 +55,7 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 
 format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
-	@doc/loom/format.py $(shell git ls-files '*.nw')
+	@doc/weaver/format.py $(shell git ls-files '*.nw')
 	@clang-format -i $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
 
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
@@ -82,7 +82,7 @@ coverage: need-test ## which lines of nw/ the tests reach
 	@cmake --build build-coverage -j $(JOBS)
 	@find build-coverage -name '*.gcda' -delete
 	@ctest --test-dir build-coverage -LE book -j $(JOBS) --output-on-failure --progress
-	@doc/loom/coverage.py build-coverage
+	@doc/weaver/coverage.py build-coverage
 
 FUZZ_SECONDS ?= 600
 fuzz: need-program ## throw mutilated scenes, meshes, tables and measured files at the readers (FUZZ_SECONDS=600 in all)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The loom's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
 
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
@@ -14,8 +14,8 @@ import tempfile
 import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-LOOM = os.path.join(ROOT, "doc", "loom")
-sys.path.insert(0, LOOM)
+WEAVER = os.path.join(ROOT, "doc", "weaver")
+sys.path.insert(0, WEAVER)
 import book  # noqa: E402
 import latexml  # noqa: E402
 import listing  # noqa: E402
@@ -93,7 +93,7 @@ class Workshop(unittest.TestCase):
     def weave(self):
         """(exit code, complaints)"""
         done = subprocess.run(
-            [os.path.join(LOOM, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
+            [os.path.join(WEAVER, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
              os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
              os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/matter/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
@@ -102,14 +102,14 @@ class Workshop(unittest.TestCase):
     def weave_pdf(self):
         """(exit code, complaints) of the second renderer"""
         done = subprocess.run(
-            [os.path.join(LOOM, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
+            [os.path.join(WEAVER, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
              os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
              os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/matter/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
     def check_links(self):
-        done = subprocess.run([os.path.join(LOOM, "links.py"), "book"], cwd=self.dir, capture_output=True, text=True)
+        done = subprocess.run([os.path.join(WEAVER, "links.py"), "book"], cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
 
@@ -344,7 +344,7 @@ $(((a)))$, $x^{)}_{=}$, $a:b$.
             with open(source, "w", encoding="utf-8") as file:
                 file.write(self.TEX)
             subprocess.run(["perl", "-e", f'use FindBin; require "$FindBin::Bin/formulas.pl"; {before} do "./latexml.pl"; die $@ if $@',
-                            "xml", os.path.join(ROOT, "doc", "book"), "1"], cwd=LOOM, input=f"{source}\t{made}\t{log}\n",
+                            "xml", os.path.join(ROOT, "doc", "book"), "1"], cwd=WEAVER, input=f"{source}\t{made}\t{log}\n",
                            text=True, check=True, timeout=60)
             with open(made, encoding="utf-8") as xml, open(log, encoding="utf-8") as said:
                 return xml.read(), re.findall(r"^Warning:not_parsed.*", said.read(), re.MULTILINE)
@@ -413,7 +413,7 @@ class Claims(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """The loom's parts by themselves."""
+    """The weaver's parts by themselves."""
 
     def test_latex_has_the_lines_of_the_chapter(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -15,8 +15,8 @@ import xml.etree.ElementTree as ET
 
 from problems import Problem, stop_if_any
 
-LOOM = os.path.dirname(os.path.abspath(__file__))
-DRIVER, FORMULAS = os.path.join(LOOM, "latexml.pl"), os.path.join(LOOM, "formulas.pl")
+HERE = os.path.dirname(os.path.abspath(__file__))
+DRIVER, FORMULAS = os.path.join(HERE, "latexml.pl"), os.path.join(HERE, "formulas.pl")
 
 NAMESPACE = "http://dlmf.nist.gov/LaTeXML"
 ET.register_namespace("", NAMESPACE)
