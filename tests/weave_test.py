@@ -4,6 +4,7 @@
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
 """
+import fcntl
 import json
 import os
 import re
@@ -19,6 +20,7 @@ sys.path.insert(0, WEAVER)
 import book  # noqa: E402
 import latexml  # noqa: E402
 import listing  # noqa: E402
+import names  # noqa: E402
 import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
@@ -410,6 +412,111 @@ class Claims(unittest.TestCase):
     def test_negative_control_an_item_that_is_not_there(self):
         with self.assertRaisesRegex(problems.Problems, "no item of the report"):
             self.table(r"\claims{F2}")
+
+
+class Tangled(unittest.TestCase):
+    """What is written into generated/, and what is left alone there so that nothing is compiled for nothing."""
+
+    CHAPTER = """Why.
+<<light/Use.hpp>>=
+inline int use() {
+  <<Use it>>
+}
+<<Use it>>=
+return 1;
+<<light/Use.cpp>>=
+#include <light/Use.hpp>
+"""
+    NAMES = ("light/Use.hpp", "light/Use.cpp")
+
+    def setUp(self):
+        self.dir = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.dir)
+        self.tangle(self.CHAPTER)
+        for name in self.NAMES:  # long ago, so that a second writing shows
+            os.utime(self.path(name), (1, 1))
+
+    def path(self, name):
+        return os.path.join(self.dir, "generated", name)
+
+    def command(self, *options):
+        return [os.path.join(LOOM, "tangle.py"), *options, "generated", "Use.nw", *self.NAMES]
+
+    def tangle(self, text, *options):
+        with open(os.path.join(self.dir, "Use.nw"), "w", encoding="utf-8") as file:
+            file.write(text)
+        subprocess.run(self.command(*options), cwd=self.dir, check=True)
+
+    def rewritten(self):
+        return [name for name in self.NAMES if os.stat(self.path(name)).st_mtime != 1]
+
+    def text(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def line_of_use(self):
+        """As the index of the book has it."""
+        row = self.text("light/Use.hpp").split("\n").index("inline int use() {")
+        return names.places(self.path("light/Use.hpp"))[row][1]
+
+    def test_the_same_chapter_touches_nothing(self):
+        self.tangle(self.CHAPTER)
+        self.assertEqual(self.rewritten(), [])
+
+    def test_a_sentence_more_leaves_the_header_and_moves_the_lines_of_the_source(self):
+        self.tangle("One more sentence.\n" + self.CHAPTER)
+        self.assertEqual(self.rewritten(), ["light/Use.cpp"])
+        self.assertIn('#line 10 "Use.nw"', self.text("light/Use.cpp"))
+        self.assertEqual(self.line_of_use(), 4)  # the index of the book has the line of now
+
+    def test_negative_control_the_line_of_then(self):
+        self.tangle("One more sentence.\n" + self.CHAPTER)
+        os.remove(self.path("light/Use.hpp.lines"))
+        self.assertEqual(self.line_of_use(), 3)
+
+    def test_a_changed_header_has_its_code_and_its_lines(self):
+        self.tangle("One more sentence.\n" + self.CHAPTER.replace("return 1", "return 2"))
+        self.assertEqual(self.rewritten(), ["light/Use.hpp", "light/Use.cpp"])
+        self.assertIn('#line 8 "Use.nw"\nreturn 2;', self.text("light/Use.hpp"))
+        self.assertEqual(self.line_of_use(), 4)
+
+    def test_a_kept_header_whose_code_changes_at_last_has_one_text(self):
+        self.tangle("One more sentence.\n" + self.CHAPTER)
+        self.tangle("One more sentence.\n" + self.CHAPTER.replace("return 1", "return 2"))
+        self.assertEqual(sorted(os.listdir(self.path("light"))), ["Use.cpp", "Use.hpp"])
+        self.assertEqual(self.line_of_use(), 4)
+
+    def test_exact_lines_when_they_are_counted(self):
+        self.tangle("One more sentence.\n" + self.CHAPTER)
+        self.tangle("One more sentence.\n" + self.CHAPTER, "--exact")
+        self.assertEqual(self.rewritten(), ["light/Use.hpp", "light/Use.cpp"])
+        self.assertEqual(sorted(os.listdir(self.path("light"))), ["Use.cpp", "Use.hpp"])
+
+    def test_without_lines_none_are_kept(self):
+        self.tangle(self.CHAPTER, "--plain")
+        self.assertNotIn("#line", self.text("light/Use.hpp"))
+
+    def test_another_build_waits_and_tangles_the_chapter_of_now(self):
+        with open(os.path.join(self.dir, "Use.nw"), "w", encoding="utf-8") as file:
+            file.write(self.CHAPTER.replace("return 1", "return 2"))
+        folder = os.open(os.path.join(self.dir, "generated"), os.O_RDONLY)
+        self.addCleanup(os.close, folder)
+        fcntl.flock(folder, fcntl.LOCK_EX)
+        with subprocess.Popen(self.command(), cwd=self.dir) as waiting:
+            with self.assertRaises(subprocess.TimeoutExpired):
+                waiting.wait(2)
+            self.assertEqual(self.rewritten(), [])
+            with open(os.path.join(self.dir, "Use.nw"), "w", encoding="utf-8") as file:
+                file.write(self.CHAPTER.replace("return 1", "return 33"))
+            fcntl.flock(folder, fcntl.LOCK_UN)
+        self.assertEqual(waiting.returncode, 0)
+        self.assertIn("return 33", self.text("light/Use.hpp"))
+
+    def test_many_builds_at_once_leave_whole_files_and_nothing_else(self):
+        builds = [subprocess.Popen(self.command(), cwd=self.dir) for _ in range(8)]
+        self.assertEqual([build.wait() for build in builds], [0] * 8)
+        self.assertEqual(sorted(os.listdir(os.path.join(self.dir, "generated", "light"))), ["Use.cpp", "Use.hpp"])
+        self.assertEqual(self.rewritten(), [])
 
 
 class Parts(unittest.TestCase):

@@ -32,12 +32,20 @@ class Name:
 
 def places(path):
     """For each line of a tangled header the (chapter, line) that it comes from."""
+    # a header may be older than its chapter's lines; then the same code with today's lines is beside it (tangle.py)
+    today = path + ".lines"
+    code = iter(places_of_code(today if os.path.exists(today) else path))
+    with open(path, encoding="utf-8") as lines:
+        return [("", 0) if LINE.match(text) else next(code) for text in lines]
+
+
+def places_of_code(path):
+    """The same for the lines that are no directives."""
     origin, out = ("", 0), []
     with open(path, encoding="utf-8") as lines:
         for text in lines:
             if directive := LINE.match(text):
                 origin = (directive[2], int(directive[1]))
-                out.append(origin)
             else:
                 out.append(origin)
                 origin = (origin[0], origin[1] + 1)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tangle one chapter of the book into its C++ files.
 
-    tangle.py [--plain] OUT CHAPTER.nw ROOT...
+    tangle.py [--plain | --exact] OUT CHAPTER.nw ROOT...
 
 Every ROOT is the name of a root chunk and, below OUT, of the file it becomes.
 The chapter must have exactly these roots: a root nobody asked for is a
@@ -9,10 +9,27 @@ misspelt or forgotten chunk, and stops the build with its name, as does a chunk
 that is used but never defined. A file is rewritten only if its text changed,
 so that make's clock sees real changes alone. --plain leaves out the line
 directives (for the source archive, clang-format and clang-tidy).
+
+A header whose new text differs from the old in nothing but line directives is
+kept as well, because a sentence added to a chapter would otherwise compile all
+who include the header. The price: until the header's code changes next, what
+the compiler or a debugger says of it may name a line of the chapter that is a
+little off. The new text is written beside the header, X.hpp.lines, where the
+index of the book reads the lines. --exact does not pay (coverage counts lines).
+
+Several build directories may tangle into one OUT at the same time. Each file
+appears whole (it is renamed into place), and nobody overwrites a file with the
+tangled text of an older chapter: the files are written under a lock on OUT,
+and only while the chapter is still the one that was tangled.
 """
+import contextlib
+import fcntl
 import os
+import re
 import subprocess
 import sys
+
+LINE_DIRECTIVE = re.compile(r"^#line .*\n", re.MULTILINE)
 
 
 def fail(chapter, messages):
@@ -48,36 +65,85 @@ def check_roots(chapter, expected):
         fail(chapter, problems)
 
 
+def tangled(chapter, name, directives):
+    code, text, complaint = run(["notangle", *(["-L"] if directives else []), f"-R{name}", chapter])
+    if code or complaint:
+        fail(chapter, (complaint or f"notangle gave {code}").splitlines())
+    return text
+
+
+def same_code(old, new):
+    return LINE_DIRECTIVE.sub("", old) == LINE_DIRECTIVE.sub("", new)
+
+
+def old_text(path):
+    with contextlib.suppress(FileNotFoundError), open(path, encoding="utf-8") as file:
+        return file.read()
+    return None
+
+
 def write_if_changed(path, text):
-    try:
-        with open(path, encoding="utf-8") as old:
-            if old.read() == text:
-                return
-    except FileNotFoundError:
-        os.makedirs(os.path.dirname(path), exist_ok=True)
+    if old_text(path) == text:
+        return
+    os.makedirs(os.path.dirname(path), exist_ok=True)
     fresh = f"{path}.{os.getpid()}.new"
     with open(fresh, "w", encoding="utf-8") as new:
         new.write(text)
     os.replace(fresh, path)
 
 
+def write_header(path, text, may_keep):
+    old, lines = old_text(path), path + ".lines"
+    if may_keep and old is not None and old != text and same_code(old, text):
+        write_if_changed(lines, text)
+    else:
+        write_if_changed(path, text)
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(lines)
+
+
+@contextlib.contextmanager
+def locked(folder):
+    os.makedirs(folder, exist_ok=True)
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)  # which gives the lock back
+
+
+def state(chapter):
+    seen = os.stat(chapter)
+    return seen.st_ino, seen.st_size, seen.st_mtime_ns
+
+
+def tangle(out, chapter, names, directives, exact):
+    """False if the chapter changed meanwhile; then nothing is written."""
+    before = state(chapter)
+    check_roots(chapter, names)
+    texts = {name: tangled(chapter, name, directives) for name in names}
+    with locked(out):
+        if state(chapter) != before:
+            return False
+        for name, text in texts.items():
+            path = os.path.join(out, name)
+            if name.endswith(".hpp"):
+                write_header(path, text, directives and not exact)
+            else:
+                write_if_changed(path, text)
+    return True
+
+
 def main():
     arguments = sys.argv[1:]
-    plain = "--plain" in arguments
-    if plain:
-        arguments.remove("--plain")
-    if len(arguments) < 3:
+    options = {argument for argument in arguments if argument.startswith("--")}
+    arguments = [argument for argument in arguments if argument not in options]
+    if len(arguments) < 3 or options - {"--plain", "--exact"}:
         sys.exit(__doc__)
-    out, chapter, *expected = arguments
-    check_roots(chapter, expected)
-    for name in expected:
-        command = ["notangle", f"-R{name}", chapter]
-        if not plain:
-            command.insert(1, "-L")
-        code, text, complaint = run(command)
-        if code or complaint:
-            fail(chapter, (complaint or f"notangle gave {code}").splitlines())
-        write_if_changed(os.path.join(out, name), text)
+    out, chapter, *names = arguments
+    while not tangle(out, chapter, names, "--plain" not in options, "--exact" in options):
+        pass
 
 
 main()
