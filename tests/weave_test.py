@@ -440,7 +440,7 @@ return 1;
         return os.path.join(self.dir, "generated", name)
 
     def command(self, *options):
-        return [os.path.join(LOOM, "tangle.py"), *options, "generated", "Use.nw", *self.NAMES]
+        return [os.path.join(WEAVER, "tangle.py"), *options, "generated", "Use.nw", *self.NAMES]
 
     def tangle(self, text, *options):
         with open(os.path.join(self.dir, "Use.nw"), "w", encoding="utf-8") as file:
