@@ -8,7 +8,7 @@ JOBS   ?= $(shell nproc)
 GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 
 # What Debian 12 calls the things we stand on: to build and run; to weave the book, and to test its weaver.
-PROGRAM := g++ cmake ninja-build noweb python3 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
+PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
 BOOK    := latexml universal-ctags fonts-texgyre fonts-texgyre-math
@@ -46,6 +46,7 @@ pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (PDF)
 reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
 	@cat $(BUILD)/report/summary.txt
+	@echo "The report: $(BUILD)/report/report.html"
 
 bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops beside bare loops, print the ratios
 	@cmake --build $(BUILD) -j $(JOBS) --target malus_image_bench malus_bench malus_sky_bench

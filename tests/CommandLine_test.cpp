@@ -165,7 +165,7 @@ TEST(ReproduceRegression, EveryVerdictIsTheCommittedOne) {
   const Outcome outcome = malusIn(scratch.path, "reproduce --out out");
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_EQ(contents(scratch / "out" / "summary.txt"), outcome.out);
-  for (const char* file : {"report.html", "report.json", "values.tex"})
+  for (const char* file : {"report.json", "values.tex"})
     EXPECT_NE(contents(scratch / "out" / file), "") << file;
 }
 
@@ -174,7 +174,7 @@ TEST(ReproduceInvariant, TwoRunsLeaveTheSameBytes) {
   const Scratch scratch;
   const auto report = [&](const std::string& out) {
     EXPECT_EQ(malusIn(scratch.path, "reproduce E6.1 F3.9 --out " + out).code, 0);
-    return contents(scratch / out / "partial.html") + contents(scratch / out / "partial.json") +
+    return contents(scratch / out / "partial.json") +
            contents(scratch / out / "F3.9" / "fresnel.csv") +
            contents(scratch / out / "F3.9" / "fresnel.svg");
   };

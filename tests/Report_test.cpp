@@ -1,4 +1,4 @@
-// One run told in four ways (nw/program/Report.nw).
+// One run, reported in three ways (nw/program/Report.nw).
 #include "program/Report.hpp"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,6 @@ CDRun sampleRun() {
   return run;
 }
 
-const std::string page = "{{status}}|{{counts}}|{{changes}}|{{verdicts}}|{{items}}";
-
 std::size_t occurrences(const std::string& text, const std::string& word) {
   std::size_t number = 0;
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
@@ -54,7 +52,7 @@ TEST(ReportIdentity, TheSummaryTellsCountsFailuresAndChanges) {
       "FAILED T2: it broke\n"
       "CHANGED T1 r: committed differs, now reproduced\n"
       "CHANGED T1 x: committed erratum, now gone\n"
-      "look at out/report.html\n");
+      "every claim: out/report.json\n");
 }
 
 // Of eleven claims that are reproduced, one repeats, three are fitted with two unknowns, two are ours, and two have labels.
@@ -105,45 +103,26 @@ TEST(ReportIdentity, TheJsonHoldsTheRun) {
   EXPECT_EQ(json["items"][1]["failure"], "it broke");
 }
 
-TEST(ReportIdentity, ThePageHoldsEachClaimOnceAndEscapesIt) {
-  const std::string html = reportHtml(sampleRun(), page);
-  EXPECT_EQ(html.find("{{"), std::string::npos);
-  for (const char* name : {"r", "e", "d", "n"})
-    EXPECT_EQ(occurrences(html, "<code>" + std::string(name) + "</code>"), 1u) << name;
-  EXPECT_NE(html.find("a &lt; b"), std::string::npos);
-  EXPECT_NE(html.find("One &amp; only"), std::string::npos);
-  EXPECT_NE(html.find("seen &quot;so&quot;"), std::string::npos);
-  EXPECT_EQ(html.find("a < b"), std::string::npos);
-  EXPECT_NE(html.find("<img src=\"T1/curve.svg\""), std::string::npos);
-  EXPECT_LT(html.find("#T1"), html.find("<section id=\"T1\">"));
-}
-
-TEST(ReportIdentity, NegativeControlATemplateWithoutAMarkIsRefused) {
-  EXPECT_THROW(reportHtml(sampleRun(), "{{status}}{{counts}}{{changes}}{{verdicts}}"),
-               CDInputError);
-}
-
 TEST(ReportIdentity, ValuesBecomeCommands) {
   EXPECT_NE(valuesTex(sampleRun()).find("\n\\malusval{T1.a}{1.5}\n"), std::string::npos);
 }
 
 TEST(ReportInvariant, APartialRunLeavesTheWholeReportAlone) {
   const Scratch scratch;
-  put(scratch / "report.template.html", page);
   CDRun run = sampleRun();
-  writeReport(run, scratch / "out", scratch.path);
-  const std::string whole = contents(scratch / "out/report.html"),
+  writeReport(run, scratch / "out");
+  const std::string whole = contents(scratch / "out/report.json"),
                     values = contents(scratch / "out/values.tex");
   run.whole = false;
   run.items.pop_back();
-  writeReport(run, scratch / "out", scratch.path);
-  EXPECT_EQ(contents(scratch / "out/report.html"), whole);
+  writeReport(run, scratch / "out");
+  EXPECT_EQ(contents(scratch / "out/report.json"), whole);
   EXPECT_EQ(contents(scratch / "out/values.tex"), values);
-  EXPECT_NE(contents(scratch / "out/partial.html"), "");
-  EXPECT_EQ(filesBelow(scratch / "out"), 7u);
+  EXPECT_NE(contents(scratch / "out/partial.json"), "");
+  EXPECT_EQ(filesBelow(scratch / "out"), 5u);
 }
 
 TEST(ReportInvariant, TwoReportsOfOneRunAreTheSameBytes) {
-  EXPECT_EQ(reportHtml(sampleRun(), page), reportHtml(sampleRun(), page));
+  EXPECT_EQ(summaryText(sampleRun(), "out"), summaryText(sampleRun(), "out"));
   EXPECT_EQ(reportJson(sampleRun()), reportJson(sampleRun()));
 }

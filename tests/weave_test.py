@@ -24,6 +24,7 @@ import names  # noqa: E402
 import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
+import report  # noqa: E402
 import verdicts  # noqa: E402
 import weave  # noqa: E402
 from problems import Problem  # noqa: E402
@@ -517,6 +518,51 @@ return 1;
         self.assertEqual([build.wait() for build in builds], [0] * 8)
         self.assertEqual(sorted(os.listdir(os.path.join(self.dir, "generated", "light"))), ["Use.cpp", "Use.hpp"])
         self.assertEqual(self.rewritten(), [])
+
+class Report(unittest.TestCase):
+    """The page of a run, laid out from its JSON."""
+
+    COUNTS = {"reproduced": 1, "erratum": 0, "differs": 1, "not testable": 0, "input": 2, "implementation": 3}
+    CLAIM = {"name": "r", "sentence": "a < b", "quantity": "", "criterion": "half a unit", "source": "print", "repeats": "",
+             "fit": "", "unknowns": 0, "printed": "1.25", "ours": "1.2512", "residual": 0.00123, "cause": "", "verdict": "reproduced"}
+    OTHER = dict(CLAIM, name="d", sentence='seen "so"', printed="", residual=None, fit="sun", unknowns=2, verdict="differs")
+    ITEM = {"id": "T1", "title": "One & only", "place": "page 1", "failure": "", "counts": COUNTS, "claims": [CLAIM, OTHER],
+            "pictures": [{"file": "T1/curve.svg", "caption": "A <curve>", "drawn": True}], "tables": ["T1/curve.csv"], "values": {}}
+    RUN = {"good": True, "whole": True, "counts": COUNTS, "own": COUNTS, "repeats": 0, "fitted": {"rows": 0, "counted": 0},
+           "changes": [], "items": [ITEM]}
+
+    def test_the_page_holds_each_claim_once_and_escapes_it(self):
+        page = report.page(self.RUN)
+        for name in "rd":
+            self.assertEqual(page.count(f"<code>{name}</code>"), 1)
+        for text in ("a &lt; b", "One &amp; only", "seen &#34;so&#34;", "A &lt;curve&gt;", '<img src="T1/curve.svg"', ">0.0012</td>",
+                     "half a unit (print); fitted (sun, 2 unknowns)<", "2 sentences and printed numbers: 1 reproduced",
+                     "2 inputs and 3 properties", '<a href="T1/curve.csv">curve.csv</a>', "Every verdict is the committed one."):
+            self.assertIn(text, page)
+        for text in ("{{", "{%", "a < b", "failed", "fitted rows", "rows repeat", "some items only", "gnuplot"):
+            self.assertNotIn(text, page)
+        self.assertLess(page.index('href="#T1"'), page.index('<section id="T1">'))
+
+    def test_what_is_not_as_committed_is_told(self):
+        broken = dict(self.ITEM, id="T2", failure="it <broke>", claims=[], pictures=[dict(self.ITEM["pictures"][0], drawn=False)])
+        page = report.page(dict(self.RUN, good=False, whole=False, items=[self.ITEM, broken], repeats=7, fitted={"rows": 3, "counted": 1},
+                                changes=[{"item": "T1", "claim": "r", "committed": "", "now": "differs"},
+                                         {"item": "T1", "claim": "x", "committed": "erratum", "now": ""}]))
+        for text in ("not what was committed", "some items only", "gnuplot is not installed", "T2 failed: it &lt;broke&gt;",
+                     "T1 r: committed nothing, now differs", "T1 x: committed erratum, now gone", "3 fitted rows count as 1\n",
+                     "7 rows repeat others"):
+            self.assertIn(text, page)
+        self.assertEqual(page.count("<img"), 1)
+
+    @unittest.skipIf(not shutil.which("tidy"), "not installed: tidy")
+    def test_the_page_is_valid_html(self):
+        done = subprocess.run(["tidy", "-quiet", "-errors"], input=report.page(self.RUN), capture_output=True, text=True)
+        self.assertEqual([line for line in done.stderr.splitlines() if "attribute \"loading\"" not in line], [])  # younger than tidy
+
+    def test_negative_control_a_report_that_lacks_something_is_refused(self):
+        for key in ("good", "whole", "own", "fitted", "changes", "items"):
+            with self.subTest(key), self.assertRaises(report.jinja2.UndefinedError):
+                report.page({name: value for name, value in self.RUN.items() if name != key})
 
 
 class Parts(unittest.TestCase):
