@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench format dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -53,6 +53,9 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 	@$(BUILD)/malus_image_bench
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
+
+bench-build: need-test ## build afresh into build-bench, print the seconds of each part
+	@tests/bench/build.py build-bench $(JOBS)
 
 format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
