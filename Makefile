@@ -11,7 +11,7 @@ GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
-BOOK    := latexml universal-ctags fonts-texgyre fonts-texgyre-math
+BOOK    := latexml universal-ctags python3-lxml python3-pybtex fonts-texgyre fonts-texgyre-math
 # other people's readers of our cubes, and a judge of HTML, for the tests alone
 TEST    := python3-gdal python3-spectral tidy
 # the tests look at every page in it; where it cannot be had they say so
@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format lint dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -61,6 +61,12 @@ format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
 	@doc/weaver/format.py $(shell git ls-files '*.nw')
 	@clang-format -i $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
+
+lint: ## check types, names and style of the Python (weaver, tests, scenes)
+	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex
+	@mypy --config-file doc/weaver/setup.cfg $(shell git ls-files '*.py')
+	@pycodestyle --config doc/weaver/setup.cfg $(shell git ls-files '*.py')
+	@pylint --rcfile=doc/weaver/setup.cfg --score=no $(shell git ls-files '*.py')
 
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
 	@cmake --build $(BUILD) -j $(JOBS) --target dist

@@ -25,6 +25,7 @@ import json
 import math
 import pathlib
 import random
+from typing import Any
 
 TAU = 2 * math.pi
 
@@ -66,7 +67,7 @@ class Mesh:
 
     def rows(self, rows, closed=False, material=None):
         """Faces between rows of vertex numbers; material(row, column), where given, switches usemtl as needed."""
-        pending = {}
+        pending: dict[str | None, list[tuple[int, ...]]] = {}
         for j in range(len(rows) - 1):
             width = len(rows[j])
             for i in range(width if closed else width - 1):
@@ -152,7 +153,7 @@ def superellipsoid(mesh, centre, half, e_up, e_round, columns, rows, floor, mate
     mesh.rows(numbers, closed=True, material=lambda j, i: material(i / columns, (heights[j] + heights[j + 1]) / 2))
 
 
-def car(rng):
+def car(_):
     """4.4 m long along y, nose to the north, wheels on z = 0."""
     mesh = Mesh('a car: body, windows, bumpers, wheels')
     mesh.facet('body', 'body')
@@ -266,7 +267,7 @@ LACQUERS = ('black-lacquer', 'white-lacquer', 'silver', 'red-paint')
 
 def scene(rng):
     """The scene file. Which stalls are taken, and by which car, is drawn; so is how each driver parked."""
-    cars = {name: [] for name in LACQUERS}
+    cars: dict[str, list[dict[str, Any]]] = {name: [] for name in LACQUERS}
     count = 0
     for row in ROWS:
         for stall in range(-15, 15):
@@ -283,7 +284,7 @@ def scene(rng):
               'translate_m': [round(side * 44 + rng.gauss(0, 0.5), 2), round(y + rng.gauss(0, 1), 2), -0.3]}
              for i, (side, y) in enumerate((side, y) for side in (-1, 1) for y in (-24, -8, 8, 24))]
     folder = 'generated/parking-lot/'
-    geometry = [{'obj': folder + name + '.obj'} for name in ('lot', 'building', 'pond', 'lawn')]
+    geometry: list[dict[str, Any]] = [{'obj': folder + name + '.obj'} for name in ('lot', 'building', 'pond', 'lawn')]
     geometry += [{'obj': folder + 'car.obj', 'materials': {'body': name}, 'instances': places} for name, places in cars.items() if places]
     geometry += [{'obj': folder + 'tree.obj', 'instances': trees}, {'ground': {'z_m': -0.3, 'material': 'soil', 'facet': 'ground'}}]
 
@@ -328,7 +329,7 @@ def readable(value):
 
 def main():
     here = pathlib.Path(__file__).resolve().parent
-    options = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    options = argparse.ArgumentParser(description=(__doc__ or '').split('\n', maxsplit=1)[0])
     options.add_argument('--out', type=pathlib.Path, default=here / 'generated' / 'parking-lot', help='directory of the meshes')
     options.add_argument('--scene', type=pathlib.Path, default=here / 'parking-lot.json', help='the scene file')
     options.add_argument('--seed', type=int, default=1)

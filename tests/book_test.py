@@ -35,48 +35,48 @@ EXPLAINED = re.compile(r'<math> proprietary attribute "alttext"|<a> proprietary 
                        r"|trimming empty <span>|moved <style> tag to <head>")
 
 
-def lacks(command, package):
+def lacks(command: str | None, package: str) -> str:
     """Why a test cannot run here. Where CI is set nothing is skipped."""
     return "" if os.environ.get("CI") or command else f"not installed: {package}"
 
 
-def pages():
+def pages() -> list[str]:
     return sorted(glob.glob(os.path.join(BOOK, "*.html")))
 
 
-def read(path):
+def read(path: str) -> str:
     with open(path, encoding="utf-8") as file:
         return file.read()
 
 
-def invalid(paths):
+def invalid(paths: list[str]) -> list[str]:
     """What tidy finds wrong with pages."""
     done = subprocess.run(["tidy", "-quiet", "-errors", "--gnu-emacs", "yes", "--show-warnings", "yes", *paths],
                           capture_output=True, text=True)
     return [line for line in done.stderr.splitlines() if line.strip() and not EXPLAINED.search(line)]
 
 
-def headings_amiss(text):
+def headings_amiss(text: str) -> list[str]:
     """A page has one h1, first, and no level is left out on the way down."""
     levels = [int(level) for level in re.findall(r"<h([1-6])\b", text)]
     amiss = [f"h{a} is followed by h{b}" for a, b in zip(levels, levels[1:]) if b > a + 1]
     return amiss + (["no h1 at the beginning"] if levels[:1] != [1] else []) + (["two h1"] if levels.count(1) > 1 else [])
 
 
-def luminance(colour):
+def luminance(colour: str) -> float:
     parts = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    linear: list[float] = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
-def contrast(a, b):
+def contrast(a: str, b: str) -> float:
     bright, dark = sorted((luminance(a), luminance(b)), reverse=True)
     return (bright + 0.05) / (dark + 0.05)
 
 
-def faint(css):
+def faint(css: str) -> list[str]:
     """Pairs of text and ground in the dress of the book that are too close to each other."""
-    out = []
+    out: list[str] = []
     for scheme in re.findall(r":root \{(.*?)\}", css, re.DOTALL):
         colours = dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", scheme))
         grounds = {"paper": ("ink", "quiet", "link", "keyword", "comment", "string", "number"), "side": ("ink", "quiet", "link"),
@@ -86,7 +86,7 @@ def faint(css):
     return out
 
 
-def declared(folder):
+def declared(folder: str) -> dict[str, str]:
     """{full name: header} of what the headers make public, by Universal Ctags."""
     headers = sorted(glob.glob(os.path.join(folder, "*", "*.hpp")))
     done = subprocess.run(["ctags", "--output-format=json", "--languages=C++", "--kinds-C++=+p-dn", "--fields=+as", "-f", "-",
@@ -103,13 +103,13 @@ def declared(folder):
     return names
 
 
-def indexed(text):
+def indexed(text: str) -> dict[str, str]:
     """{name: description} of the index of identifiers."""
     rows = re.findall(r'<tr id="id-[^"]*"><td><code>(.*?)</code></td><td>(.*?)</td>', text, re.DOTALL)
     return {html.unescape(name): about.strip() for name, about in rows}
 
 
-def unmapped(chain, files):
+def unmapped(chain: str, files: list[str]) -> list[str]:
     """Chapters of the floors to which no box of the page with the map leads."""
     boxes = set(re.findall(r'<a href="([^"#]*)#[^"]*"><rect', chain))
     return [file for file in files if "-" in file and file not in boxes]
@@ -118,32 +118,32 @@ def unmapped(chain, files):
 class Pages(unittest.TestCase):
     """What can be seen without a browser."""
 
-    def test_the_book_is_there(self):
+    def test_the_book_is_there(self) -> None:
         self.assertTrue(os.path.isfile(os.path.join(BOOK, "index.html")), f"no book in {BOOK}: make book")
 
     @unittest.skipIf(lacks(shutil.which("tidy"), "tidy"), lacks(shutil.which("tidy"), "tidy"))
-    def test_html_is_valid(self):
+    def test_html_is_valid(self) -> None:
         self.assertEqual(invalid(pages()), [])
 
-    def test_headings_are_in_order(self):
+    def test_headings_are_in_order(self) -> None:
         self.assertEqual({os.path.basename(path): amiss for path in pages() if (amiss := headings_amiss(read(path)))}, {})
 
-    def test_colours_are_told_apart_in_the_light_and_in_the_dark(self):
+    def test_colours_are_told_apart_in_the_light_and_in_the_dark(self) -> None:
         css = read(os.path.join(BOOK, "book.css"))
         self.assertEqual(css.count(":root {"), 2)
         self.assertEqual(faint(css), [])
 
     @unittest.skipIf(lacks(shutil.which("ctags"), "universal-ctags"), lacks(shutil.which("ctags"), "universal-ctags"))
-    def test_every_public_name_of_every_header_is_indexed_and_described(self):
+    def test_every_public_name_of_every_header_is_indexed_and_described(self) -> None:
         index = indexed(read(os.path.join(BOOK, "identifiers.html")))
         self.assertEqual({name: header for name, header in declared(HEADERS).items() if not index.get(name)}, {})
 
-    def test_every_chapter_is_a_box_of_the_map(self):
+    def test_every_chapter_is_a_box_of_the_map(self) -> None:
         files = [os.path.basename(path) for path in pages()]
         self.assertGreater(len([file for file in files if "-" in file]), 80)
         self.assertEqual(unmapped(read(os.path.join(BOOK, "chain.html")), files), [])
 
-    def test_every_item_of_the_inventory_is_reachable_from_the_last_part(self):
+    def test_every_item_of_the_inventory_is_reachable_from_the_last_part(self) -> None:
         """A row of its table leads to chapter and code, or owns that nothing is built yet."""
         with open(os.path.join(ROOT, "validation", "inventory.csv"), encoding="utf-8") as file:
             items = [row["id"] for row in csv.DictReader(line for line in file if not line.startswith("#"))]
@@ -169,12 +169,14 @@ OVERFLOW = """(() => {
 class InABrowser(unittest.TestCase):
     """Every page at three widths, in one browser."""
 
+    browser: browser.Browser
+
     @classmethod
-    def setUpClass(cls):
+    def setUpClass(cls) -> None:
         cls.browser = browser.Browser().__enter__()
         cls.addClassCleanup(cls.browser.__exit__)
 
-    def amiss(self, path):
+    def amiss(self, path: str) -> list[str]:
         """What is wrong with a page, at any width."""
         self.browser.size(WIDTHS[0])
         self.browser.open("file://" + path)
@@ -185,15 +187,16 @@ class InABrowser(unittest.TestCase):
                 out.append(f"at {width}: {overflow}")
         return out + self.browser.complaints()
 
-    def test_every_page_fits_and_the_console_is_silent(self):
+    def test_every_page_fits_and_the_console_is_silent(self) -> None:
         self.assertEqual({os.path.basename(path): amiss for path in pages() if (amiss := self.amiss(path))}, {})
 
-    def found(self, query):
+    def found(self, query: str) -> list[str]:
         self.browser.open(f"file://{BOOK}/search.html?q={query}")
         self.assertEqual(self.browser.complaints(), [])
-        return self.browser.value('[...document.querySelectorAll("#results a")].map((a) => a.getAttribute("href"))')
+        leads: list[str] = self.browser.value('[...document.querySelectorAll("#results a")].map((a) => a.getAttribute("href"))')
+        return leads
 
-    def test_search_leads_to_places_that_exist(self):
+    def test_search_leads_to_places_that_exist(self) -> None:
         leads = self.found("brewster+angle")
         self.assertGreater(len(leads), 0)
         self.assertIn("identifiers.html#id-CDStokesVector", self.found("cdstokesvector"))
@@ -202,13 +205,13 @@ class InABrowser(unittest.TestCase):
             self.assertIn(f'id="{anchor}"', read(os.path.join(BOOK, page)), address)
         self.assertEqual(self.found("qwertyuiop"), [])
 
-    def test_negative_controls(self):
+    def test_negative_controls(self) -> None:
         good = read(os.path.join(BOOK, "search.html"))
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(os.path.join(BOOK, "book.css"), folder)
             shutil.copytree(os.path.join(BOOK, "fonts"), os.path.join(folder, "fonts"))
 
-            def spoiled(what):
+            def spoiled(what: str) -> str:
                 path = os.path.join(folder, "spoiled.html")
                 with open(path, "w", encoding="utf-8") as file:
                     file.write(re.sub(r"<script.*?</script>", "", good).replace("</main>", what + "</main>"))
@@ -224,7 +227,7 @@ class NegativeControls(unittest.TestCase):
     """Each check sees what it is there for."""
 
     @unittest.skipIf(lacks(shutil.which("tidy"), "tidy"), lacks(shutil.which("tidy"), "tidy"))
-    def test_invalid_html(self):
+    def test_invalid_html(self) -> None:
         page = "<!DOCTYPE html>\n<html lang='en'><head><title>t</title></head><body>{}</body></html>\n"
         for body, complaint in (("<p>good</p>", ""), ("<p><em>open</p>", "em"), ("<p><div>block</div></p>", "implicit <p>"),
                                 ("<p id='a'>1</p><p id='a'>2</p>", 'anchor "a" already defined'), ("<blink>x</blink>", "blink")):
@@ -235,23 +238,23 @@ class NegativeControls(unittest.TestCase):
             with self.subTest(body):
                 self.assertTrue(complaint in said and bool(said) == bool(complaint), said)
 
-    def test_headings(self):
+    def test_headings(self) -> None:
         self.assertEqual(headings_amiss("<h1>a</h1><h2>b</h2><h3>c</h3><h2>d</h2>"), [])
         self.assertTrue(headings_amiss("<h1>a</h1><h3>c</h3>"))
         self.assertTrue(headings_amiss("<h2>a</h2>"))
 
-    def test_contrast(self):
+    def test_contrast(self) -> None:
         self.assertAlmostEqual(contrast("#000000", "#ffffff"), 21)
         self.assertAlmostEqual(contrast("#777777", "#ffffff"), 4.48, places=2)
         css = read(os.path.join(BOOK, "book.css"))
         self.assertTrue(faint(re.sub(r"--quiet: #[0-9a-f]{6}", "--quiet: #a0a0a0", css)))
 
-    def test_map(self):
+    def test_map(self) -> None:
         chain = '<a href="light-A.html#ch:A"><rect x="1"/></a> <a href="light-B.html#ch:B">B</a>'
         self.assertEqual(unmapped(chain, ["light-A.html", "light-B.html", "index.html"]), ["light-B.html"])
 
     @unittest.skipIf(lacks(shutil.which("ctags"), "universal-ctags"), lacks(shutil.which("ctags"), "universal-ctags"))
-    def test_names(self):
+    def test_names(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             os.mkdir(os.path.join(folder, "light"))
             with open(os.path.join(folder, "light", "x.hpp"), "w", encoding="utf-8") as file:

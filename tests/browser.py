@@ -6,13 +6,14 @@ import shutil
 import subprocess
 import tempfile
 import time
+from typing import Any
 
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
          "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--remote-debugging-pipe"]
 PATIENCE_S = 120
 
 
-def program():
+def program() -> str | None:
     """The browser of this machine, or None."""
     return shutil.which("chromium") or shutil.which("chromium-headless-shell")
 
@@ -20,33 +21,38 @@ def program():
 class Browser:
     """One browser process with one page, used as `with Browser() as browser:`."""
 
-    def __enter__(self):
+    def __enter__(self) -> "Browser":
         self.profile = tempfile.mkdtemp()
         to_browser, self.write = os.pipe()
         self.read, from_browser = os.pipe()
 
-        def pipes():  # the protocol wants descriptors 3 and 4
+        def pipes() -> None:  # the protocol wants descriptors 3 and 4
             first, second = os.dup(to_browser), os.dup(from_browser)
-            os.dup2(first, 3), os.dup2(second, 4)
+            os.dup2(first, 3)
+            os.dup2(second, 4)
 
-        self.process = subprocess.Popen([program(), *FLAGS, f"--user-data-dir={self.profile}", "about:blank"], preexec_fn=pipes,
+        self.process = subprocess.Popen([program() or "chromium", *FLAGS, f"--user-data-dir={self.profile}", "about:blank"], preexec_fn=pipes,
                                         close_fds=False, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         stderr=subprocess.DEVNULL)
-        os.close(to_browser), os.close(from_browser)
-        self.last, self.buffer, self.events, self.session = 0, b"", [], None
+        os.close(to_browser)
+        os.close(from_browser)
+        self.last, self.buffer = 0, b""
+        self.events: list[dict[str, Any]] = []
+        self.session: str | None = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.call(domain + ".enable")
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.process.terminate()
         self.process.wait()
-        os.close(self.write), os.close(self.read)
+        os.close(self.write)
+        os.close(self.read)
         shutil.rmtree(self.profile, ignore_errors=True)
 
-    def message(self):
+    def message(self) -> dict[str, Any]:
         """The next message of the browser."""
         deadline = time.monotonic() + PATIENCE_S
         while b"\0" not in self.buffer:
@@ -56,12 +62,13 @@ class Browser:
                 raise RuntimeError("the browser is silent" if not ready else "the browser has ended")
             self.buffer += received
         text, self.buffer = self.buffer.split(b"\0", 1)
-        return json.loads(text)
+        answer: dict[str, Any] = json.loads(text)
+        return answer
 
-    def call(self, method, **parameters):
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """The answer to a command; what happens meanwhile is kept in self.events."""
         self.last += 1
-        command = {"id": self.last, "method": method, "params": parameters}
+        command: dict[str, Any] = {"id": self.last, "method": method, "params": parameters}
         if self.session:
             command["sessionId"] = self.session
         os.write(self.write, json.dumps(command).encode() + b"\0")
@@ -69,23 +76,24 @@ class Browser:
             self.events.append(message)
         if "error" in message:
             raise RuntimeError(f"{method}: {message['error']['message']}")
-        return message["result"]
+        result: dict[str, Any] = message["result"]
+        return result
 
-    def open(self, address):
+    def open(self, address: str) -> None:
         """Goes to a page and waits until all of it is there."""
         self.events.clear()
         self.call("Page.navigate", url=address)
         while not any(event["method"] == "Page.loadEventFired" for event in self.events):
             self.events.append(self.message())
 
-    def size(self, width, height=900):
+    def size(self, width: int, height: int = 900) -> None:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
-    def value(self, expression):
+    def value(self, expression: str) -> Any:
         answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         return answer["result"].get("value")
 
-    def complaints(self):
+    def complaints(self) -> list[str]:
         """What the console said since the page was opened: errors, warnings and exceptions."""
         out = []
         for event in self.events:

@@ -28,6 +28,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from typing import Any
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FLOORS = ["light", "matter", "world", "imaging"]
@@ -156,7 +157,7 @@ class Build:
 
 def tests_of(chapters):
     """{chapter: tests whose first comment names it}"""
-    tests = {chapter: [] for chapter in chapters}
+    tests: dict[str, list[pathlib.Path]] = {chapter: [] for chapter in chapters}
     for path in sorted((ROOT / "tests").glob("*_test.cpp")):
         head = path.read_text()
         comment = re.match(r"(?:\s*//.*\n)+", head)
@@ -293,7 +294,7 @@ def main():
     def try_chapter(part):
         chapter, wanted, pool = part
         ordered = sorted(tests[chapter], key=lambda test: limits[test])
-        done = []
+        done: list[Any] = []
         for fault in pool:
             if sum(f.outcome in ("noticed", "survived") for f in done) == wanted:
                 break

@@ -5,7 +5,18 @@ A reference picture is rendered once, undisturbed. Then, until the time is over,
 a render of the same scene, and the run is resumed to its end. Every cube must have the bits of the reference, every refusal must be
 one line with exit code 2, and nothing half written may bear a true name. Exit code 1 at the first failure, with the seed that repeats it.
 """
-import json, os, random, re, resource, shutil, signal, subprocess, sys, tempfile, time, zlib
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
 
 program = os.path.abspath(sys.argv[1])
 seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 600
@@ -13,6 +24,16 @@ seed = int(sys.argv[3]) if len(sys.argv) > 3 else int(time.time())
 dice = random.Random(seed)
 scenes = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "scenes")
 CUBES = ["s.0000.img", "s.0000.truth.img", "s.0001.img", "s.0001.truth.img"]
+
+
+def text_of(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def put(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
 
 
 class Failure(Exception):
@@ -58,7 +79,7 @@ def whole_files_only(place, directory):
         if name in CUBES:
             demand(open(path, "rb").read() == reference[name], f"{name} bears its name and is not whole")
         if name.endswith(".run.json"):
-            record = json.load(open(path))
+            record = json.loads(text_of(path))
             for cube, checksum in record["cubes"].items():
                 there = zlib.crc32(open(os.path.join(place, directory, cube), "rb").read())
                 demand(f"{there:08x}" == checksum, f"{name} vouches for {cube} and is wrong")
@@ -96,14 +117,14 @@ def stops(place):
 
 def races(place):
     """Many start at once into one directory; one of them works, and the others are refused."""
-    many = [start(place, "--out", "b", *dice.choice([[], ["--resume"], ["--seed", "9"]]), "--threads", "1")
+    many = [start(place, "--out", "b", *dice.choice(((), ("--resume",), ("--seed", "9"))), "--threads", "1")
             for _ in range(dice.randint(2, 5))]
     results = [p.communicate(timeout=300) + (p.returncode, p.args) for p in many]
     for _, err, code, args in results:
         demand(code == 0 or (code == 2 and err.count("\n") == 1), f"{args}: exit {code}, {err!r}")
     demand(any(code == 0 for _, _, code, _ in results), "nobody worked")
     for frame in ("0000", "0001"):
-        record = json.load(open(os.path.join(place, "b", f"s.{frame}.run.json")))
+        record = json.loads(text_of(os.path.join(place, "b", f"s.{frame}.run.json")))
         for cube, checksum in record["cubes"].items():
             data = open(os.path.join(place, "b", cube), "rb").read()
             demand(f"{zlib.crc32(data):08x}" == checksum, f"{cube} is not what its record says")
@@ -157,16 +178,16 @@ def mend(place):
     """Another mesh between two halves is refused, or nothing of the first half was there."""
     interrupt(place, signal.SIGKILL)
     mesh = os.path.join(place, "bar.obj")
-    old = open(mesh).read()
+    old = text_of(mesh)
     begun = os.path.isdir(os.path.join(place, "b")) and any(n.endswith(".tiles") and os.path.getsize(os.path.join(place, "b", n)) > 60
                                                             for n in os.listdir(os.path.join(place, "b")))
     record = os.path.join(place, "b", "s.0000.run.json.part")
     if os.path.exists(record) and dice.random() < .5:
         os.remove(record)
     if begun:
-        open(mesh, "w").write("# mended\n" + old)
+        put(mesh, "# mended\n" + old)
         refused(place, "--out", "b", "--resume")
-        open(mesh, "w").write(old)
+        put(mesh, old)
     finish(place)
 
 
@@ -195,6 +216,7 @@ def disk(place):
            f"exit {done.returncode}: {done.stderr}")
     whole_files_only(place, "left")
     finish(place)
+    return None
 
 
 def closed(place):
@@ -233,14 +255,14 @@ def parts(place):
 
 
 def make_scene(place):
-    text = open(os.path.join(scenes, "chunky-bar-copper.json")).read()
+    text = text_of(os.path.join(scenes, "chunky-bar-copper.json"))
     scene = json.loads(re.sub(r"^\s*//.*$", "", text, flags=re.M))
     shutil.copy(os.path.join(scenes, "chunky-bar.obj"), os.path.join(place, "bar.obj"))
     scene["geometry"][0]["obj"] = "bar.obj"
     scene["sensor"] = {"kind": "framing", "width": 64, "height": 56, "field_of_view_deg": 36.87}
     scene["radiometry"] = {"sampling": "importance", "rays": [24, 4], "seed": 5}
     scene["platform"]["frames"] = 2
-    json.dump(scene, open(os.path.join(place, "s.json"), "w"))
+    put(os.path.join(place, "s.json"), json.dumps(scene))
 
 
 mishaps = [kills, stops, races, frames_race, damage, lose, mend, full, disk, closed, parts]

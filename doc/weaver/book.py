@@ -7,6 +7,8 @@ import configparser
 import os
 import re
 import sys
+from collections.abc import Callable, Container
+from typing import Any
 
 import latexml
 import names
@@ -27,21 +29,22 @@ MALUSVAL = re.compile(r"\\malusval\{([^}]*)\}\{(.*)\}\s*$")
 class Page:
     """One page of the book; source is the file to edit, chapter its number (0: none)."""
 
-    def __init__(self, name, source, latex, chapter=0):
+    def __init__(self, name: str, source: str, latex: str, chapter: int = 0) -> None:
         self.name, self.source, self.latex, self.chapter = name, source, latex, chapter
         self.file = name + ".html"
         self.title = self.body = ""
-        self.sections = []  # (anchor, title)
-        self.chunks = []
-        self.root = None    # LaTeXML's XML
+        self.sections: list[tuple[str, str]] = []  # (anchor, title)
+        self.chunks: list[noweb.Chunk] = []
+        self.root: Any = None  # LaTeXML's XML
+        self.tree: Any = None  # and its HTML
         self.tex = self.addresses = ""  # what that was made of, and what its references lead to
 
 
-def line_of(text, place):
+def line_of(text: str, place: int) -> int:
     return text.count("\n", 0, place) + 1
 
 
-def without_comments(latex):
+def without_comments(latex: str) -> str:
     """The same text, same length, comments blanked, so that what stands in them is not looked for."""
     return re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match[0]), latex)
 
@@ -50,19 +53,20 @@ def without_comments(latex):
 class Links:
     """Labels, citations, values and figures of all pages: each must exist."""
 
-    def __init__(self, options):
+    def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
         self.bibliography = references.read(options.bibliography)
         self.values = self.read_values(os.path.join(options.report, "values.tex"))
-        self.labels = {}       # label -> (page, anchor, number)
-        self.cited = {}        # key -> pages that cite it
-        self.figures = {}      # name in \includegraphics -> file
-        self.anchors = {}      # noweb's label -> (page file, anchor)
-        self.inventory = None  # the page with the table of all items
+        self.labels: dict[str, tuple[Page, str, str]] = {}  # label -> (page, anchor, number)
+        self.cited: dict[str, list[Page]] = {}  # key -> pages that cite it
+        self.figures: dict[str, str] = {}  # name in \includegraphics -> file
+        self.anchors: dict[str, tuple[str, str]] = {}  # noweb's label -> (page file, anchor)
+        self.inventory: Page | None = None  # the page with the table of all items
+        self.numbers: dict[str, int] = {}  # of the bibliography's entries
 
     @staticmethod
-    def read_values(path):
-        values = {}
+    def read_values(path: str) -> dict[str, str]:
+        values: dict[str, str] = {}
         if os.path.exists(path):
             with open(path, encoding="utf-8") as lines:
                 for number, line in enumerate(lines, 1):
@@ -73,26 +77,27 @@ class Links:
                         values[entry[1]] = entry[2]
         return values
 
-    def find_figure(self, name):
+    def find_figure(self, name: str) -> str:
         for folder in (self.options.report, os.path.join(self.options.book, "figures")):
             for ending in (".svg", ".png"):
                 path = os.path.join(folder, name + ending)
                 if os.path.isfile(path):
                     return path
-        return None
+        return ""
 
-    def drawing(self, name):
+    def drawing(self, name: str) -> str:
         """The text of a figure that has links in it, whose addresses are labels; nothing for other figures."""
         path = self.figures[name]
         if not path or not path.endswith(".svg") or not path.startswith(self.options.book):
-            return None
+            return ""
         with open(path, encoding="utf-8") as file:
             text = file.read()
-        return text if DRAWN_LINK.search(text) else None
+        return text if DRAWN_LINK.search(text) else ""
 
-    def check(self, pages):
+    def check(self, pages: list[Page]) -> None:
         """Everything the prose refers to exists; all that does not is told at once."""
-        problems, defined = [], {}
+        problems: list[Problem] = []
+        defined: dict[str, str] = {}
         for page in pages:
             for label in LABEL.finditer(without_comments(page.latex)):
                 if label[1] in defined:
@@ -100,39 +105,45 @@ class Links:
                                             f"label {label[1]} is also defined in {defined[label[1]]}"))
                 defined[label[1]] = page.source
         for page in pages:
-            text = without_comments(page.latex)
-
-            def complain(match, sentence):
-                problems.append(Problem(page.source, line_of(text, match.start()), sentence))
-
-            for match in REFERENCE.finditer(text):
-                if match[1] not in defined:
-                    complain(match, rf"{match[0]}: no chapter has \label{{{match[1]}}}")
-            for match in VALUE.finditer(text):
-                if match[1] not in self.values:
-                    complain(match, rf"{match[0]}: `malus reproduce` left no such value")
-            for match in CITATION.finditer(text):
-                for key in match[1].split(","):
-                    if key not in self.bibliography:
-                        complain(match, f"{match[0]}: {self.options.bibliography} has no entry {key}")
-                    elif page not in self.cited.setdefault(key, []):
-                        self.cited[key].append(page)
-            for match in FIGURE.finditer(text):
-                self.figures[match[1]] = self.find_figure(match[1])
-                if not self.figures[match[1]]:
-                    complain(match, rf"{match[0]}: neither {self.options.report} nor {self.options.book}/figures"
-                                    f" has {match[1]}.svg or .png")
-                for link in DRAWN_LINK.finditer(self.drawing(match[1]) or ""):
-                    if link[1] not in defined:
-                        complain(match, rf"{match[0]}: its drawing links to {link[1]}, but no chapter has that label")
+            problems += self.check_page(page, defined)
         stop_if_any(problems)
 
-    def substitute(self, page):
+    def check_page(self, page: Page, defined: Container[str]) -> list[Problem]:
+        """What one page refers to; notes who cites what, and which figures are shown."""
+        problems: list[Problem] = []
+        text = without_comments(page.latex)
+
+        def complain(match: re.Match[str], sentence: str) -> None:
+            problems.append(Problem(page.source, line_of(text, match.start()), sentence))
+
+        for match in REFERENCE.finditer(text):
+            if match[1] not in defined:
+                complain(match, rf"{match[0]}: no chapter has \label{{{match[1]}}}")
+        for match in VALUE.finditer(text):
+            if match[1] not in self.values:
+                complain(match, rf"{match[0]}: `malus reproduce` left no such value")
+        for match in CITATION.finditer(text):
+            for key in match[1].split(","):
+                if key not in self.bibliography:
+                    complain(match, f"{match[0]}: {self.options.bibliography} has no entry {key}")
+                elif page not in self.cited.setdefault(key, []):
+                    self.cited[key].append(page)
+        for match in FIGURE.finditer(text):
+            self.figures[match[1]] = self.find_figure(match[1])
+            if not self.figures[match[1]]:
+                complain(match, rf"{match[0]}: neither {self.options.report} nor {self.options.book}/figures"
+                                f" has {match[1]}.svg or .png")
+            for link in DRAWN_LINK.finditer(self.drawing(match[1])):
+                if link[1] not in defined:
+                    complain(match, rf"{match[0]}: its drawing links to {link[1]}, but no chapter has that label")
+        return problems
+
+    def substitute(self, page: Page) -> None:
         """Puts values into the prose and leaves a hole for each figure. (Comments may name what does not exist.)"""
         latex = VALUE.sub(lambda match: self.values.get(match[1], ""), page.latex)
         page.latex = FIGURE.sub(lambda match: rf"\litfigure{{{match[1]}}}", latex)
 
-    def bibliography_page(self):
+    def bibliography_page(self) -> Page:
         """The entries that are cited, numbered by name and year."""
         keys = references.ordered(self.cited, self.bibliography)
         self.numbers = {key: number for number, key in enumerate(keys, 1)}
@@ -144,16 +155,16 @@ class Links:
 class Part:
     """A floor of the house: its folder, title, what it is about, and its pages."""
 
-    def __init__(self, folder, title, about):
+    def __init__(self, folder: str, title: str, about: str) -> None:
         self.folder, self.title, self.about = folder, title, about
-        self.pages = []
-        self.page = None  # what a renderer shows of the part itself
+        self.pages: list[Page] = []
+        self.page = Page(folder, "", "")  # what a renderer shows of the part itself
 
 
 class Book:
     """All pages, in parts."""
 
-    def __init__(self, options):
+    def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
         self.about = configparser.ConfigParser()
         self.about.read(os.path.join(options.book, "book.ini"), encoding="utf-8")
@@ -163,13 +174,16 @@ class Book:
         self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
         self.verdicts = verdicts.Verdicts(options.report, options.inventory)
-        self.parts, self.front, self.back = [], [], []
+        self.parts: list[Part] = []
+        self.front: list[Page] = []
+        self.back: list[Page] = []
 
-    def gather(self):
+    def gather(self) -> None:
         """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
         defined = {word for chapter in self.chapters for chunk in chapter.chunks for word, _ in chunk.defines}
         stop_if_any(names.check(self.names, defined))
-        parts, number = {}, 0  # the folder "back" holds what stands after the last part
+        parts: dict[str, Part] = {}
+        number = 0  # the folder "back" holds what stands after the last part
         for chapter in self.chapters:
             folder = os.path.basename(os.path.dirname(chapter.path))
             name = os.path.splitext(os.path.basename(chapter.path))[0]
@@ -191,8 +205,10 @@ class Book:
                 parts[folder].pages.append(page)
             self.name_chunks(chapter, page)
 
-    def name_chunks(self, chapter, page):
-        problems, taken = [], set()
+    def name_chunks(self, chapter: noweb.Chapter, page: Page) -> None:
+        """A place on the page for each chunk; every chunk that is used must be there."""
+        problems: list[Problem] = []
+        taken: set[str] = set()
         for chunk in chapter.chunks:
             anchor = "chunk-" + latexml.slug(noweb.plain(chunk.name))
             count = 1
@@ -205,19 +221,19 @@ class Book:
                          for name, label in chunk.used_chunks if not label]
         stop_if_any(problems)
 
-    def substitute(self, page):
+    def substitute(self, page: Page) -> None:
         """Puts into the prose what the program computed."""
         if re.search(r"^\\inventory$", page.latex, re.MULTILINE):
             self.links.inventory = page
         self.verdicts.substitute(page, self.chapters, self.pages())
         self.links.substitute(page)
 
-    def pages(self):
+    def pages(self) -> list[Page]:
         """In reading order."""
         return self.front + [page for part in self.parts for page in part.pages] + self.back
 
 
-def run(description, render):
+def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     """The command line of both renderers; problems go to the standard error, and the exit status is then 1."""
     arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("out", "work", "book", "report", "bibliography"):

@@ -16,8 +16,9 @@ BEGINS = re.compile(r"^<<(.*)>>=\s*$")
 INCLUDE = re.compile(r'^#include "(\w+)/')
 
 
-def main():
-    problems, homes = [], {}
+def main() -> None:
+    problems: list[str] = []
+    homes: dict[str, str] = {}
     for chapter in sys.argv[1:]:
         floor = chapter.split("/")[-2]
         with open(chapter, encoding="utf-8") as lines:

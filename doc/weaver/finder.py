@@ -1,24 +1,48 @@
 """The index behind the book's search page: for each word the sections that have it. It is a file, not a server."""
 import json
 import re
-from html import unescape
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import lxml.html
 
 import listing
+
+if TYPE_CHECKING:
+    from book import Page
 
 COMMON = frozenset("""about above after again all also and any are because been before below both but can could does each else
 even every few for from get had has have her here him his how into its itself just may more most must not now off once one only
 other our out over own same see she should since some such than that the their them then there these they this those through
 too under until upon used uses was way were what when where which while who whose why will with without would yet you""".split())
-SECTION = re.compile(r'<section id="([^"]*)"')
-HEADING = re.compile(r"<h[1-6][^>]*>(.*?)</h[1-6]>", re.DOTALL)
-UNREAD = re.compile(r'<pre>.*?</pre>|<math.*?</math>|<svg.*?</svg>|<p class="chunk-foot">.*?</p>|<a class="permalink".*?</a>'
-                    r'|<span class="ltx_tag[^>]*>.*?</span>', re.DOTALL)
-TAG = re.compile(r"<[^>]*>")
+HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
+UNREAD_TAGS = ("math", "svg")
+UNREAD_CLASSES = ("chunk-foot", "permalink", "ltx_tag")
 WORD = re.compile(r"\w+")
 DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 
 
-def base36(number):
+class Section:
+    """What is read in one section: its pieces of text, and those of its heading."""
+
+    def __init__(self, anchor: str) -> None:
+        self.anchor = anchor
+        self.pieces: list[str] = []
+        self.title = ""
+
+    @property
+    def text(self) -> str:
+        """All in one line."""
+        return in_one_line("".join(self.pieces))
+
+
+def in_one_line(text: str) -> str:
+    """A text with single spaces."""
+    return " ".join(text.split())
+
+
+def base36(number: int) -> str:
+    """A number in few letters."""
     out = ""
     while number or not out:
         number, digit = divmod(number, 36)
@@ -26,43 +50,71 @@ def base36(number):
     return out
 
 
-def text_of(html):
-    """What is read aloud: no code of chunks, no formulas, no marks."""
-    return " ".join(unescape(TAG.sub("", UNREAD.sub(" ", html))).split())
+def is_unread(element: Any) -> bool:
+    """No code of chunks, no formulas, no marks."""
+    is_chunk = element.tag == "pre" and not element.attrib  # other lines that are set as they are typed have a class
+    return is_chunk or element.tag in UNREAD_TAGS or any(name in UNREAD_CLASSES for name in element.get("class", "").split())
 
 
-def sections_of(page):
-    """(anchor, title, html) of each section of a page; the first has the page's own title."""
-    begins = [(match.start(), match[1]) for match in SECTION.finditer(page.body)] or [(0, "")]
-    begins[0] = (0, begins[0][1])
-    for (begin, anchor), (end, _) in zip(begins, begins[1:] + [(len(page.body), "")]):
-        html = page.body[begin:end]
-        heading = HEADING.search(html)
-        yield anchor, text_of(heading[1]) if heading else page.title, html
+def read_aloud(element: Any) -> Iterator[str]:
+    """The pieces of text that are read."""
+    if not isinstance(element.tag, str):
+        return
+    if is_unread(element):
+        yield " "
+        return
+    yield element.text or ""
+    for child in element:
+        yield from read_aloud(child)
+        yield child.tail or ""
 
 
-def index(pages, identifiers):
-    """A script that defines INDEX, as search.js wants it."""
-    sections, words = [], {}
+def text_of(html: str) -> str:
+    """What is read aloud of a piece of HTML."""
+    return in_one_line("".join(read_aloud(lxml.html.fragment_fromstring(html, create_parent="div"))))
+
+
+def fill(sections: list[Section], element: Any) -> None:
+    """Goes through a page in its order; a section ends where the next begins, be it inside or behind."""
+    if not isinstance(element.tag, str):
+        return
+    if is_unread(element):
+        sections[-1].pieces.append(" ")
+        return
+    if element.tag == "section" and element.get("id"):
+        sections.append(Section(element.get("id")))
+    if element.tag in HEADINGS and not sections[-1].title:
+        sections[-1].title = in_one_line("".join(read_aloud(element)))
+    sections[-1].pieces.append(element.text or "")
+    for child in element:
+        fill(sections, child)
+        sections[-1].pieces.append(child.tail or "")
+
+
+def sections_of(page: "Page") -> list[Section]:
+    """The sections of a page; what stands above the first belongs to it."""
+    sections = [Section("")]
+    fill(sections, lxml.html.fragment_fromstring(page.body, create_parent="div"))
+    if len(sections) > 1:
+        sections[1].pieces = sections[0].pieces + sections[1].pieces
+        sections[1].title = sections[0].title or sections[1].title
+        del sections[0]
+    for section in sections:
+        section.title = section.title or page.title
+    return sections
+
+
+def index(pages: list["Page"], identifiers: Iterable[listing.Identifier]) -> str:
+    """A script that defines INDEX, as search.js expects it."""
+    sections: list[tuple[int, str, str]] = []
+    words: dict[str, list[int]] = {}
     for number, page in enumerate(pages):
-        for anchor, title, html in sections_of(page):
-            for word in set(WORD.findall(text_of(html).lower())):
+        for section in sections_of(page):
+            for word in set(WORD.findall(section.text.lower())):
                 if len(word) > 2 and not word[0].isdigit() and word not in COMMON:
                     words.setdefault(word, []).append(len(sections))
-            sections.append((number, anchor, title))
+            sections.append((number, section.anchor, section.title))
     packed = {word: " ".join(base36(b - a) for a, b in zip([-1] + found, found)) for word, found in sorted(words.items())}
     data = {"pages": [(page.file, text_of(page.title)) for page in pages], "sections": sections, "words": packed,
             "identifiers": [(word, listing.anchor_of(word)) for word, *_ in identifiers]}
     return "const INDEX = " + json.dumps(data, ensure_ascii=False, separators=(",", ":")) + ";\n"
-
-
-PAGE = """<h1>Search</h1>
-<form class="search" role="search" action="search.html"><label>Words or the beginnings of words
-<input type="search" name="q"></label> <button>Search</button></form>
-<noscript><p>Searching needs JavaScript, reading does not. The <a href="identifiers.html">index of identifiers</a>,
-the <a href="chunks.html">index of chunks</a> and the contents lead to everything as well.</p></noscript>
-<p id="said" role="status"></p>
-<ol id="results" class="results"></ol>
-<script src="search-index.js"></script>
-<script src="search.js"></script>
-"""

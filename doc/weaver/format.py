@@ -13,9 +13,12 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
+from collections.abc import Iterator
 
 BEGINS = re.compile(r"^<<(.*)>>=[ \t]*$")
 ENDS = re.compile(r"^@([ \t]|$)")
+Chunks = dict[str, list[tuple[int, str]]]
+
 USE = re.compile(r"(?<!@)<<((?:(?!<<|>>).)+)>>")
 
 
@@ -23,13 +26,14 @@ class Char:
     """One tangled character: what it is, where in the chapter it stands, in which chunk, indented how far."""
     __slots__ = ("text", "origin", "chunk", "indent")
 
-    def __init__(self, text, origin, chunk, indent):
+    def __init__(self, text: str, origin: int | None, chunk: str | None, indent: int) -> None:
         self.text, self.origin, self.chunk, self.indent = text, origin, chunk, indent
 
 
-def read_chunks(text):
+def read_chunks(text: str) -> Chunks:
     """{name: [(offset, line), ...]} with every line of code and where it begins."""
-    chunks, name, offset = {}, None, 0
+    chunks: Chunks = {}
+    name, offset = None, 0
     for line in text.splitlines(keepends=True):
         if begin := BEGINS.match(line):
             name = begin[1]
@@ -42,7 +46,7 @@ def read_chunks(text):
     return chunks
 
 
-def expand(chunks, name, indent, out):
+def expand(chunks: Chunks, name: str, indent: int, out: list[Char]) -> None:
     lines = chunks[name]
     for number, (offset, line) in enumerate(lines):
         last = number == len(lines) - 1
@@ -62,23 +66,23 @@ def expand(chunks, name, indent, out):
             out.append(Char("\n", offset + len(body), name, indent))
 
 
-def plain(text, offset, name, indent, out):
+def plain(text: str, offset: int, name: str, indent: int, out: list[Char]) -> None:
     escaped = re.compile(r"@(<<|>>)")
     skip = {m.start() for m in escaped.finditer(text)}
     out.extend(Char(c, offset + i, name, indent) for i, c in enumerate(text) if i not in skip)
 
 
-def replacements(code, path):
+def replacements(code: str, path: str) -> Iterator[tuple[int, int, str]]:
     answer = subprocess.run(["clang-format", "--output-replacements-xml", f"--assume-filename={path}"],
                             input=code.encode(), capture_output=True, check=True)
     spans = code.encode()
     for r in xml.fromstring(answer.stdout).iter("replacement"):
-        begin, length = int(r.get("offset")), int(r.get("length"))
+        begin, length = int(r.attrib["offset"]), int(r.attrib["length"])
         first = len(spans[:begin].decode())
         yield first, first + len(spans[begin:begin + length].decode()), r.text or ""
 
 
-def edits_of(text, chars, root):
+def edits_of(text: str, chars: list[Char], root: str) -> Iterator[tuple[int, int, str]]:
     code = "".join(c.text for c in chars) + "\n"
     for begin, end, new in replacements(code, root):
         while begin > 0 and code[begin - 1].isspace():  # widen to the whole gap between two words
@@ -103,7 +107,7 @@ def edits_of(text, chars, root):
         yield first, last, "\n".join(lines)
 
 
-def main():
+def main() -> None:
     arguments = sys.argv[1:]
     check = "--check" in arguments
     changed = []
@@ -111,9 +115,9 @@ def main():
         with open(chapter, encoding="utf-8") as file:
             text = file.read()
         for _ in range(4):  # one edit may make room for another
-            chunks, edits = read_chunks(text), {}
+            chunks, edits = read_chunks(text), dict[tuple[int, int], str]()
             for root in (name for name in chunks if re.search(r"\.[ch]pp$", name)):
-                chars = []
+                chars: list[Char] = []
                 expand(chunks, root, 0, chars)
                 for first, last, new in edits_of(text, chars, root):
                     if text[first:last] != new:

@@ -6,36 +6,48 @@ referred to its address and resolve all references, since only we see the
 whole book. The second step turns that XML into HTML. What a step made is kept
 beside a digest of what it was made from, and made again only if that changed.
 """
+import functools
 import hashlib
 import os
 import re
 import shutil
 import subprocess
-import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import lxml.html
+from lxml import etree
 
 from problems import Problem, stop_if_any
+
+if TYPE_CHECKING:
+    from book import Page
+
+Element = Any                       # lxml brings no types
+Address = tuple[str, str, str]      # of a link: where it leads, its text, its title
+Parts = tuple[str, str, str]        # of a label: anchor, number, kind
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DRIVER, FORMULAS = os.path.join(HERE, "latexml.pl"), os.path.join(HERE, "formulas.pl")
 
 NAMESPACE = "http://dlmf.nist.gov/LaTeXML"
-ET.register_namespace("", NAMESPACE)
 SECTIONS = ("chapter", "section", "subsection", "subsubsection", "paragraph")
 BEGIN = r"\documentclass{book}\usepackage{malus}\begin{document}"  # on the first line, which keeps its number
+XML, HTML = etree.XMLParser(remove_comments=True, remove_pis=True), lxml.html.HTMLParser(encoding="utf-8")
 MESSAGE = re.compile(r"^(Warning|Error|Fatal):(.*)")
 PLACE = re.compile(r"\.tex; (?:from )?line (\d+)")
 
 
-def ours(name):
+def ours(name: str) -> str:
     return f"{{{NAMESPACE}}}{name}"
 
 
-def slug(text):
+def slug(text: str) -> str:
     """Words joined by hyphens, as they may stand in an address."""
     return "-".join(re.findall(r"[a-z0-9]+", text.lower())) or "section"
 
 
-def version(tool):
+def version(tool: str) -> str:
     """Changes when another LaTeXML is installed."""
     path = shutil.which(tool)
     if not path:
@@ -44,7 +56,7 @@ def version(tool):
     return f"{path} {status.st_size} {status.st_mtime_ns}"
 
 
-def write(path, text):
+def write(path: str, text: str) -> None:
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
 
@@ -55,21 +67,21 @@ class Job:
     The text it is made from is asked for only when it has to be made.
     """
 
-    def __init__(self, page, depends, text, path, before, after):
+    def __init__(self, page: "Page", depends: str, text: Callable[[], str], path: str, before: str, after: str) -> None:
         self.page, self.depends, self.text = page, depends, text
         self.source, self.destination, self.log = path + before, path + after, path + after + ".log"
         self.key = path + after + ".key"
 
-    def is_made(self, digest):
+    def is_made(self, digest: str) -> bool:
         """Whether the destination was made from this very text."""
         if not os.path.exists(self.destination) or not os.path.exists(self.key):
             return False
         with open(self.key, encoding="utf-8") as kept:
             return kept.read() == digest
 
-    def problems(self, said):
+    def problems(self, said: str) -> list[Problem]:
         """Every complaint of LaTeXML is a problem: of the chapter, at its line, since the lines are the chapter's."""
-        lines = []
+        lines: list[str] = []
         if os.path.exists(self.log):
             with open(self.log, encoding="utf-8", errors="replace") as file:
                 lines = file.read().splitlines()
@@ -77,8 +89,7 @@ class Job:
         for i, line in enumerate(lines):
             if message := MESSAGE.match(line):
                 place = PLACE.search(" ".join(lines[i:i + 3]))
-                line = int(place[1]) if place else 0
-                found.append(Problem(self.page.source, line, f"LaTeXML: {message[1]}:{message[2]}"))
+                found.append(Problem(self.page.source, int(place[1]) if place else 0, f"LaTeXML: {message[1]}:{message[2]}"))
         if not found and not os.path.exists(self.destination):
             found.append(Problem(self.page.source, 0, f"LaTeXML: {said.strip() or 'made nothing, and does not say why'}"))
         return found
@@ -87,7 +98,7 @@ class Job:
 class Converter:
     """Runs LaTeXML in a directory of its own."""
 
-    def __init__(self, work, theme):
+    def __init__(self, work: str, theme: str) -> None:
         os.makedirs(work, exist_ok=True)
         self.work, self.theme = work, theme
         self.context = version("latexml")
@@ -95,7 +106,7 @@ class Converter:
             with open(path, encoding="utf-8") as file:
                 self.context += file.read()
 
-    def run(self, step, jobs):
+    def run(self, step: str, jobs: list[Job]) -> Iterator[Job]:
         """Yields each job when it is made: at once those that need no more be made, while LaTeXML works on the others.
 
         Those begin with the longest, so that none is waited for at the end.
@@ -114,7 +125,7 @@ class Converter:
         finally:
             if worker and worker.poll() is None:
                 worker.kill()
-        problems = []
+        problems: list[Problem] = []
         for job in wanted:
             if found := job.problems(said):
                 problems += found
@@ -123,35 +134,36 @@ class Converter:
         stop_if_any(problems)
         yield from wanted
 
-    def start(self, step, jobs):
+    def start(self, step: str, jobs: list[Job]) -> subprocess.Popen[str]:
         """LaTeXML at work."""
         command = ["perl", DRIVER, step, self.theme, str(os.cpu_count())]
         worker = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        assert worker.stdin
         worker.stdin.write("".join(f"{job.source}\t{job.destination}\t{job.log}\n" for job in jobs))
         worker.stdin.close()
         worker.stdin = None  # nothing more to say: for communicate()
         return worker
 
-    def to_xml(self, pages):
+    def to_xml(self, pages: list["Page"]) -> Iterator["Page"]:
         """First step, LaTeX to XML: yields each page when it has its root."""
         jobs = []
         for page in pages:  # page.chapter is its number, 0 for none
             page.tex = f"{BEGIN}\\setcounter{{chapter}}{{{max(page.chapter - 1, 0)}}}{page.latex}\n\\end{{document}}\n"
-            jobs.append(Job(page, page.tex, lambda page=page: page.tex, os.path.join(self.work, page.name), ".tex", ".xml"))
+            jobs.append(Job(page, page.tex, functools.partial(getattr, page, "tex"), os.path.join(self.work, page.name), ".tex", ".xml"))
         for job in self.run("xml", jobs):
-            job.page.root = ET.parse(job.destination).getroot()
+            job.page.root = etree.parse(job.destination, XML).getroot()
             yield job.page
 
-    def to_html(self, pages):
-        """Second step, XML to HTML: yields each page with its body."""
-        jobs = [Job(page, page.tex + page.addresses, lambda page=page: ET.tostring(page.root, encoding="unicode"),
+    def to_html(self, pages: list["Page"]) -> Iterator["Page"]:
+        """Second step, XML to HTML: yields each page when it has its tree."""
+        jobs = [Job(page, page.tex + page.addresses, functools.partial(etree.tostring, page.root, encoding="unicode"),
                     os.path.join(self.work, page.name), ".ref.xml", ".html") for page in pages]
         for job in self.run("html", jobs):
-            with open(job.destination, encoding="utf-8") as file:
-                yield job.page, re.search(r'<article class="ltx_document">\n?(.*)</article>', file.read(), re.DOTALL)[1]
+            job.page.tree = lxml.html.parse(job.destination, HTML).find(".//article")
+            yield job.page
 
 
-def number_of(element):
+def number_of(element: Element) -> str:
     """The number LaTeX gave it, or the tag the author gave it."""
     for tag in element.iterfind(f"{ours('tags')}/{ours('tag')}"):
         if tag.get("role") == "refnum":
@@ -159,7 +171,7 @@ def number_of(element):
     return ""
 
 
-def words(title):
+def words(title: Element | None) -> str:
     """The words of a title, without its number and its formulas."""
     if title is None:
         return ""
@@ -171,9 +183,10 @@ def words(title):
     return "".join(parts)
 
 
-def give_addresses(root):
+def give_addresses(root: Element) -> dict[str, Parts]:
     """Names what can be linked to in this chapter; returns {label: (anchor, number, kind)}."""
-    labels, taken = {}, set()
+    labels: dict[str, Parts] = {}
+    taken: set[str] = set()
     for element in root.iter():
         kind = element.tag.removeprefix(f"{{{NAMESPACE}}}")
         names = [name.removeprefix("LABEL:") for name in element.get("labels", "").split()]
@@ -194,36 +207,33 @@ def give_addresses(root):
     return labels
 
 
-def link(element, href, text, title):
+def link(element: Element, href: str, text: str, title: str) -> None:
     """Makes an element a link."""
     element.tag = ours("ref")
-    tail = element.tail
-    element.clear()
-    element.text, element.tail = text, tail
+    element.clear(keep_tail=True)
+    element.text = text
     element.set("href", href)
     if title:
         element.set("title", title)
 
 
-def resolve(root, address, citation):
+def resolve(root: Element, address: Callable[[str], Address], citation: Callable[[str], Address]) -> str:
     """Replaces references by links. address(label) and citation(key) give (href, text, title); returns all of them."""
     used = []
 
-    def link_to(element, target):
+    def link_to(element: Element, target: Address) -> None:
         used.append("\t".join(target))
         link(element, *target)
 
     for element in list(root.iter(ours("ref"))):
         if name := element.get("labelref"):
             link_to(element, address(name.removeprefix("LABEL:")))
-    for parent in list(root.iter()):
-        for bibref in parent.findall(ours("bibref")):
-            place, tail = list(parent).index(bibref), bibref.tail
-            parent.remove(bibref)
-            keys = bibref.get("bibrefs").split(",")
-            for i, key in enumerate(keys):
-                cited = ET.Element(ours("ref"))
-                link_to(cited, citation(key))
-                cited.tail = ", " if i + 1 < len(keys) else tail
-                parent.insert(place + i, cited)
+    for bibref in list(root.iter(ours("bibref"))):
+        *others, last = bibref.get("bibrefs").split(",")
+        for key in others:
+            cited = etree.Element(ours("ref"))
+            bibref.addprevious(cited)
+            link_to(cited, citation(key))
+            cited.tail = ", "
+        link_to(bibref, citation(last))
     return "\n".join(used)

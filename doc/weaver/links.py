@@ -3,107 +3,99 @@
 
     links.py DIR
 
-Reads all pages of DIR as a browser would. It fails on a link to a page or a
-place that does not exist, a picture or font that is not there, a name given
-to two places of a page, a picture without words, anything loaded from
-elsewhere (links one may follow are allowed), scripts on any page but the
-search, and what LaTeXML or the
+Reads all pages of DIR. It fails on a link to a page or a place that does not
+exist, a picture or font that is not there, a name given to two places of a
+page, a picture without words, anything loaded from elsewhere (links one may
+follow are allowed), scripts on any page but the search, and what LaTeXML or the
 weaver leave behind when they could not do their work.
 """
 import glob
-import html
 import os
 import re
 import sys
 import urllib.parse
+from typing import Any
 
-LEFT_BEHIND = ("ltx_ERROR", "ltx_missing", "lit-chunk", "lit-figure", 'href="chunk:', '"LABEL:')
+import lxml.html
+
+LEFT_BEHIND = re.compile(r"ltx_ERROR|ltx_missing|lit-chunk|lit-figure|^chunk:|^LABEL:")
 SCRIPTED = "search.html"  # the only page that may load scripts; it has none of its own
 LOADS = {"img": "src", "link": "href", "script": "src", "iframe": "src", "source": "src"}
+PARSER = lxml.html.HTMLParser(encoding="utf-8")
 
 
 class Page:
-    """What one page defines and what it needs: (place in its text, kind, address)."""
+    """What one page defines and what it needs: (line, kind, address)."""
 
-    # a parser of HTML takes four times as long; these expect values between double quotes, as the weaver writes them
-    TAG = re.compile(r'<([a-z]\w*)((?:[^>"]|"[^"]*")*)>', re.IGNORECASE)
-    ATTRIBUTE = re.compile(r'([\w:-]+)="([^"]*)"')
-    LOOKED_AT = re.compile(r'\s(?:id|href|src)\s*=(?P<otherwise>[^"])?', re.IGNORECASE)
+    def __init__(self, path: str) -> None:
+        self.path = path
+        self.places: set[str] = set()
+        self.needs: list[tuple[int, str, str]] = []
+        self.problems: list[tuple[int, str]] = []
+        for element in lxml.html.parse(path, PARSER).getroot().iter():
+            if isinstance(element.tag, str):
+                self.read(element)
+            else:
+                self.problems.append((element.sourceline, f"{element} was left behind"))
 
-    def __init__(self, path):
-        self.path, self.places, self.needs, self.problems = path, set(), [], []
-        with open(path, encoding="utf-8") as file:
-            self.text = file.read()
-        for tag in self.TAG.finditer(self.text):
-            looked_at = self.LOOKED_AT.search(tag[2])
-            if looked_at or tag[1].lower() in ("img", "svg", "script"):
-                self.read(tag.start(), tag[1].lower(), dict(self.ATTRIBUTE.findall(tag[2])))
-            if looked_at and looked_at["otherwise"]:
-                self.problems.append((tag.start(), f"{tag[0]} has a value without double quotes"))
-        for trace in LEFT_BEHIND:
-            if trace in self.text:
-                self.problems += [(match.start(), f"{trace} was left behind") for match in
-                                  re.finditer(rf'alttext="[^"]*"|{re.escape(trace)}', self.text) if match[0] == trace]
-
-    def line(self, place):
-        return self.text.count("\n", 0, place) + 1
-
-    def read(self, where, tag, attributes):
-        if place := html.unescape(attributes.get("id", "")):
+    def read(self, element: Any) -> None:
+        """Takes notes of one element."""
+        line, tag, attributes = element.sourceline, element.tag, dict(element.attrib)
+        if place := attributes.get("id"):
             if place in self.places:
-                self.problems.append((where, f"two places are called {place}"))
+                self.problems.append((line, f"two places are called {place}"))
             self.places.add(place)
+        for name, value in attributes.items():
+            if name != "alttext" and (trace := LEFT_BEHIND.search(value)):
+                self.problems.append((line, f"{trace[0]} was left behind"))
         if tag == "script" and (os.path.basename(self.path) != SCRIPTED or not attributes.get("src")):
-            self.problems.append((where, "a script"))
+            self.problems.append((line, "a script"))
         if tag == "img" and not attributes.get("alt"):
-            self.problems.append((where, f"the picture {attributes.get('src')} has no words"))
+            self.problems.append((line, f"the picture {attributes.get('src')} has no words"))
         if tag == "svg" and not attributes.get("aria-label"):
-            self.problems.append((where, "a drawing has no words"))
+            self.problems.append((line, "a drawing has no words"))
         if address := attributes.get(LOADS.get(tag, "")):
-            self.needs.append((where, "load", html.unescape(address)))
+            self.needs.append((line, "load", address))
         elif tag == "a" and "href" in attributes:
-            self.needs.append((where, "link", html.unescape(attributes["href"])))
+            self.needs.append((line, "link", attributes["href"]))
 
 
-def check_need(files, pages, page, kind, address):
+def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, address: str) -> str:
     """What is wrong with an address, or nothing."""
     parts = urllib.parse.urlsplit(address)
     if parts.scheme or parts.netloc:
-        return "is loaded from elsewhere" if kind == "load" else None
+        return "is loaded from elsewhere" if kind == "load" else ""
     name = urllib.parse.unquote(parts.path) or os.path.basename(page.path)
     if os.path.normpath(name) not in files:
         return "does not exist"
     place = urllib.parse.unquote(parts.fragment)
     if place and (name not in pages or place not in pages[name].places):
         return "names no place of that page"
-    return None
+    return ""
 
 
-def check(folder):
-    """All problems as sentences, and the number of links."""
+def check(folder: str) -> list[str]:
+    """All problems as sentences."""
     pages = {os.path.basename(path): Page(path) for path in sorted(glob.glob(os.path.join(folder, "*.html")))}
     files = {os.path.relpath(os.path.join(below, name), folder) for below, _, names in os.walk(folder) for name in names}
-    problems, count = [], 0
-    if "index.html" not in pages:
-        problems.append(f"{folder}: has no index.html")
+    problems = [] if "index.html" in pages else [f"{folder}: has no index.html"]
     for page in pages.values():
-        problems += [f"{page.path}:{page.line(place)}: {what}" for place, what in sorted(page.problems)]
-        for place, kind, address in page.needs:
-            count += 1
+        problems += [f"{page.path}:{line}: {what}" for line, what in sorted(page.problems)]
+        for line, kind, address in page.needs:
             if wrong := check_need(files, pages, page, kind, address):
-                problems.append(f"{page.path}:{page.line(place)}: {address} {wrong}")
+                problems.append(f"{page.path}:{line}: {address} {wrong}")
     for path in glob.glob(os.path.join(folder, "*.css")):
         with open(path, encoding="utf-8") as file:
             for address in re.findall(r"url\(([^)]*)\)", file.read()):
                 if not os.path.isfile(os.path.join(folder, address)):
                     problems.append(f"{path}: {address} does not exist")
-    return problems, count
+    return problems
 
 
-def main():
+def main() -> None:
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    problems, count = check(sys.argv[1])
+    problems = check(sys.argv[1])
     for problem in problems:
         print(problem, file=sys.stderr)
     sys.exit(bool(problems))

@@ -2,9 +2,14 @@
 import functools
 import os
 import re
+from collections.abc import Iterable, Sequence
 from html import escape
 
 import noweb
+from names import Name
+from noweb import Chunk
+
+Identifier = tuple[str, str, set[str], set[str]]  # what Listing.identifiers says of one
 
 KEYWORDS = frozenset("""
 alignas alignof auto bool break case catch char class concept const consteval constexpr constinit const_cast continue
@@ -27,12 +32,12 @@ WHOLE = 12  # a chunk of so many lines is not cut by the end of a page
 MOST = 8  # uses of an identifier that are listed below its definition; the index lists all
 
 
-def anchor_of(word):
+def anchor_of(word: str) -> str:
     """A place in the index; letters, digits and underscores stay, others (operators) become their codes."""
     return "id-" + re.sub(r"\W", lambda match: f".{ord(match[0]):x}", word)
 
 
-def name_html(name):
+def name_html(name: str) -> str:
     """A chunk's name; it may quote code in double brackets."""
     parts = re.split(r"\[\[(.*?)\]\]", name)
     return "".join(f"<code>{escape(part)}</code>" if i % 2 else escape(part) for i, part in enumerate(parts))
@@ -41,16 +46,44 @@ def name_html(name):
 class Listing:
     """What stands in and below the chunks of a book. A renderer says how a link, a word or a colour is written."""
 
-    def __init__(self, chapters, names=()):
+    def __init__(self, chapters: list[noweb.Chapter], names: Sequence[Name] = ()) -> None:
         self.names = names  # public names of the program's headers (names.py)
         self.chunks = [chunk for chapter in chapters for chunk in chapter.chunks]
         self.by_label = {chunk.label: chunk for chunk in self.chunks}
         self.by_path = {os.path.normpath(chapter.path): chapter.chunks for chapter in chapters}
 
-    def ordered(self, labels):
+    def number(self, label: str) -> str:
+        """A chunk's number, which leads to it."""
+        raise NotImplementedError
+
+    def more(self, count: int, word: str) -> str:
+        """A link to all uses of a word."""
+        raise NotImplementedError
+
+    def word(self, word: str) -> str:
+        """A word of code in a line of prose."""
+        raise NotImplementedError
+
+    def use(self, name: str, label: str) -> str:
+        """Where a chunk uses another."""
+        raise NotImplementedError
+
+    def identifier(self, text: str, label: str) -> str:
+        """A word of code that leads to its definition."""
+        raise NotImplementedError
+
+    def plain(self, text: str) -> str:
+        """Code as it is."""
+        raise NotImplementedError
+
+    def colour(self, kind: str, text: str) -> str:
+        """Code of a kind: keyword, comment, string, number, directive."""
+        raise NotImplementedError
+
+    def ordered(self, labels: Iterable[str]) -> list[str]:
         return sorted(set(labels), key=lambda label: self.by_label[label].number)
 
-    def numbers(self, labels, word=""):
+    def numbers(self, labels: Iterable[str], word: str = "") -> str:
         """Links in the order of the book; of the uses of a word only the first few, and a link to all."""
         unique = self.ordered(labels)
         shown = unique if not word or len(unique) <= MOST + 1 else unique[:MOST]
@@ -58,19 +91,20 @@ class Listing:
         more = len(unique) - len(shown)
         return f"{out} and {self.more(more, word)}" if more else out
 
-    def code(self, chunk):
-        out, waiting = [], []  # plain text waits for its neighbours, since it comes in many small pieces
+    def code(self, chunk: Chunk) -> str:
+        out: list[str] = []
+        waiting: list[str] = []  # plain text waits for its neighbours, since it comes in many small pieces
 
-        def put(text):
+        def put(text: str) -> None:
             if waiting:
                 out.append(self.plain("".join(waiting)))
                 waiting.clear()
             out.append(text)
 
         for match in TOKEN.finditer(chunk.text):
-            kind, text = match.lastgroup, match[0]
+            kind, text = match.lastgroup or "", match[0]
             if kind == "use":
-                put(self.use(chunk, *chunk.used_chunks[int(text[1:-1])]))
+                put(self.use(*chunk.used_chunks[int(text[1:-1])]))
             elif kind == "word" and text in chunk.links:
                 put(self.identifier(text, chunk.links[text]))
             elif kind == "word" and text in KEYWORDS:
@@ -82,7 +116,7 @@ class Listing:
         put("")
         return "".join(out)
 
-    def foot(self, chunk):
+    def foot(self, chunk: Chunk) -> str:
         notes, place = [], chunk.pieces.index(chunk)
         if place > 0:
             notes.append(f"Continues {self.number(chunk.pieces[place - 1].label)}")
@@ -98,15 +132,17 @@ class Listing:
             notes.append(f"Defines {self.word(word)}{where}")
         return ". ".join(notes) + "."
 
-    def named_chunks(self):
+    def named_chunks(self) -> list[Chunk]:
         """The first piece of each chunk, by name."""
         firsts = [chunk for chunk in self.chunks if chunk.pieces[0] is chunk]
         return sorted(firsts, key=lambda chunk: noweb.plain(chunk.name).lower())
 
     @functools.cached_property
-    def identifiers(self):
+    def identifiers(self) -> list[Identifier]:
         """(identifier, what it is, labels of the chunks that define it, labels of the others that use it), by name."""
-        defined, used, about = {}, {}, {}
+        defined: dict[str, set[str]] = {}
+        used: dict[str, set[str]] = {}
+        about: dict[str, str] = {}
         for chunk in self.chunks:
             for word, users in chunk.defines:
                 defined.setdefault(word, set()).add(chunk.label)
@@ -116,31 +152,31 @@ class Listing:
         for name in self.names:
             if "::" not in name.full and not name.word.startswith("operator"):
                 continue  # defined by the author
-            if chunk := self.chunk_at(name):
-                defined.setdefault(name.full, set()).add(chunk.label)
-                about[name.full] = about.get(name.full) or comment_at(name.line - chunk.line, chunk.text.split("\n"))
-        return [(word, about[word] or self.place_of(word, defined[word]), defined[word], used.get(word, set()) - defined[word])
+            if home := self.chunk_at(name):
+                defined.setdefault(name.full, set()).add(home.label)
+                about[name.full] = about.get(name.full) or comment_at(name.line - home.line, home.text.split("\n"))
+        return [(word, about[word] or self.place_of(defined[word]), defined[word], used.get(word, set()) - defined[word])
                 for word in sorted(defined, key=lambda word: (word.lower(), word))]
 
-    def chunk_at(self, name):
+    def chunk_at(self, name: Name) -> Chunk | None:
         """The chunk that declares a public name."""
         for chunk in self.by_path.get(os.path.normpath(name.path), ()):
             if 0 <= name.line - chunk.line <= chunk.text.count("\n"):
                 return chunk
         return None
 
-    def about(self, word, labels):
+    def about(self, word: str, labels: Iterable[str]) -> str:
         """What an identifier is: the first sentence of the comment at its declaration."""
         comments = (comment_on(word, self.by_label[label].text.split("\n")) for label in self.ordered(labels))
         return next((comment for comment in comments if comment), "")
 
-    def place_of(self, word, labels):
+    def place_of(self, labels: Iterable[str]) -> str:
         """What an identifier without a comment is: a part of what its chunk is about."""
         chunk = self.by_label[self.ordered(labels)[0]]
         return noweb.plain(chunk.name)
 
 
-def comment_on(word, lines):
+def comment_on(word: str, lines: list[str]) -> str:
     """The first sentence of the /// comment above or beside the declaration of a word; nothing if there is none."""
     whole = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)")
     for place, line in enumerate(lines):
@@ -150,7 +186,7 @@ def comment_on(word, lines):
     return ""
 
 
-def comment_at(place, lines):
+def comment_at(place: int, lines: list[str]) -> str:
     """The first sentence of the /// comment above or beside a line; nothing if there is none."""
     beside = re.search(r"///<?\s*(.*)", lines[place])
     above = place
@@ -162,40 +198,40 @@ def comment_at(place, lines):
         above -= 1
     if not comment or not comment[0]:
         return ""
-    text = " ".join(comment).split(" @param")[0]
+    text = " ".join(comment).split(" @param", maxsplit=1)[0]
     return re.split(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])", text)[0].rstrip(".;: ")
 
 
 class HtmlListing(Listing):
     """Chunks as HTML. Links are written as chunk:LABEL; the weaver puts the address in when it lays out the pages."""
 
-    def number(self, label):
+    def number(self, label: str) -> str:
         chunk = self.by_label[label]
         place = escape(f"{noweb.plain(chunk.name)}, {chunk.chapter.path}", quote=True)
         return f'<a href="chunk:{label}" title="{place}">{chunk.number}</a>'
 
-    def more(self, count, word):
+    def more(self, count: int, word: str) -> str:
         return f'<a href="identifiers.html#{anchor_of(word)}">{count} more</a>'
 
-    def word(self, word):
+    def word(self, word: str) -> str:
         return f"<code>{escape(word)}</code>"
 
-    def use(self, chunk, name, label):
+    def use(self, name: str, label: str) -> str:
         number = self.by_label[label].number
         return f'<a class="use" href="chunk:{label}">⟨{name_html(name)} <span class="chunk-number">{number}</span>⟩</a>'
 
-    def identifier(self, text, label):
+    def identifier(self, text: str, label: str) -> str:
         target = self.by_label[label]
         title = f"defined in chunk {target.number}, {target.chapter.path}"
         return f'<a class="identifier" href="chunk:{label}" title="{escape(title)}">{text}</a>'
 
-    def plain(self, text):
+    def plain(self, text: str) -> str:
         return escape(text, quote=False)
 
-    def colour(self, kind, text):
+    def colour(self, kind: str, text: str) -> str:
         return f'<span class="{kind}">{escape(text, quote=False)}</span>'
 
-    def chunk(self, chunk, anchor):
+    def chunk(self, chunk: Chunk, anchor: str) -> str:
         again = "+" if chunk.pieces[0] is not chunk else ""
         return (f'<div class="chunk" id="{anchor}">\n'
                 f'<p class="chunk-name"><a class="chunk-number" href="#{anchor}">{chunk.number}</a>'
@@ -203,13 +239,13 @@ class HtmlListing(Listing):
                 f'<pre><code>{self.code(chunk)}</code></pre>\n'
                 f'<p class="chunk-foot">{self.foot(chunk)}</p>\n</div>')
 
-    def chunk_index(self):
+    def chunk_index(self) -> str:
         rows = [f'<tr><td>⟨{name_html(chunk.name)}⟩</td>'
                 f'<td>{self.numbers(piece.label for piece in chunk.pieces)}</td>'
                 f'<td>{self.numbers(chunk.used_in) or "a file"}</td></tr>' for chunk in self.named_chunks()]
         return table(("Chunk", "defined in", "used in"), rows)
 
-    def identifier_index(self):
+    def identifier_index(self) -> str:
         rows = [f'<tr id="{anchor_of(word)}"><td><code>{escape(word)}</code></td>'
                 f"<td>{escape(about)}</td><td>{self.numbers(defined)}</td><td>{self.numbers(used)}</td></tr>"
                 for word, about, defined, used in self.identifiers]
@@ -222,60 +258,60 @@ TEX = {"number": "digits"}  # \litnumber is the number of a chunk
 class TexListing(Listing):
     """Chunks as LaTeX, for book.sty."""
 
-    def number(self, label):
+    def number(self, label: str) -> str:
         return rf"\litnumber{{{label}}}{{{self.by_label[label].number}}}"
 
-    def more(self, count, word):
+    def more(self, count: int, word: str) -> str:
         return rf"\litmore{{{anchor_of(word)}}}{{{count}}}"
 
-    def word(self, word):
+    def word(self, word: str) -> str:
         return rf"\litcode{{{noweb.quote_latex(word)}}}"
 
-    def prose(self, words):
+    def prose(self, words: str) -> str:
         return noweb.quote_latex(words).replace("-{}", "-").replace("\\textquotesingle{}", "'")
 
-    def name(self, name):
+    def name(self, name: str) -> str:
         parts = re.split(r"\[\[(.*?)\]\]", name)
         return "".join(self.word(part) if i % 2 else self.prose(part) for i, part in enumerate(parts))
 
-    def use(self, chunk, name, label):
+    def use(self, name: str, label: str) -> str:
         return rf"\lituse{{{label}}}{{{self.by_label[label].number}}}{{{self.name(name)}}}"
 
-    def identifier(self, text, label):
+    def identifier(self, text: str, label: str) -> str:
         return rf"\litidentifier{{{label}}}{{{self.plain(text)}}}"
 
-    def plain(self, text):
+    def plain(self, text: str) -> str:
         return noweb.quote_latex(text).replace(" ", "\\ ")
 
-    def colour(self, kind, text):
+    def colour(self, kind: str, text: str) -> str:
         return "\n".join(rf"\lit{TEX.get(kind, kind)}{{{self.plain(line)}}}" if line else "" for line in text.split("\n"))
 
-    def chunk(self, chunk):
+    def chunk(self, chunk: Chunk) -> str:
         """The definition of what \\litchunk prints."""
         again = "+" if chunk.pieces[0] is not chunk else ""
         lines = [rf"\litline{{{line}}}" for line in self.code(chunk).split("\n")]
         if len(lines) > WHOLE:
             lines[2:-3] = [line + r"\litbreak" for line in lines[2:-3]]
-        lines = "\n".join(lines)
         shown = re.sub("\x01(\\d+)\x02", lambda use: chunk.used_chunks[int(use[1])][0] + " 1234", chunk.text)
         widest = max(map(len, shown.split("\n")))
+        code = "\n".join(lines)
         return (rf"\litdefine{{{chunk.label}}}{{\litname{{{chunk.label}}}{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}%" "\n"
-                rf"\litcodelines{{{widest}}}{{{lines}}}\litfoot{{{self.foot(chunk)}}}}}" "\n")
+                rf"\litcodelines{{{widest}}}{{{code}}}\litfoot{{{self.foot(chunk)}}}}}" "\n")
 
-    def chunk_index(self):
+    def chunk_index(self) -> str:
         return "\n".join(rf"\litchunkentry{{{self.name(chunk.name)}}}{{{self.pages(piece.label for piece in chunk.pieces)}}}"
                          rf"{{{self.numbers(chunk.used_in) or 'a file'}}}" for chunk in self.named_chunks())
 
-    def identifier_index(self):
+    def identifier_index(self) -> str:
         return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{{self.prose(about)}}}"
                          rf"{{{self.pages(defined)}}}{{{self.numbers(used)}}}"
                          for word, about, defined, used in self.identifiers)
 
-    def pages(self, labels):
+    def pages(self, labels: Iterable[str]) -> str:
         return ", ".join(rf"{self.number(label)}~\litpage{{{label}}}" for label in self.ordered(labels))
 
 
-def table(head, rows):
+def table(head: Iterable[str], rows: Iterable[str]) -> str:
     cells = "".join(f'<th scope="col">{title}</th>' for title in head)
     body = "\n".join(rows)
     return f'<div class="index-scroll"><table class="index">\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table></div>'

@@ -12,25 +12,28 @@ import json
 import os
 import re
 import subprocess
+from collections.abc import Collection, Iterable
+from typing import Any
 
 from problems import Problem
 
 NAMESPACE = "malus"
+Place = tuple[str, int]  # a chapter and its line
 LINE = re.compile(r'#line (\d+) "([^"]+)"')
 
 
 class Name:
     """One declaration: its full name without the namespace, and where it stands."""
 
-    def __init__(self, full, word, kind, path, line):
+    def __init__(self, full: str, word: str, kind: str, path: str, line: int) -> None:
         self.full, self.word, self.kind, self.path, self.line = full, word, kind, path, line
 
-    def needs_def(self):
+    def needs_def(self) -> bool:
         """Whether the author must define it: all that a user of the namespace may write, but for operators."""
         return "::" not in self.full and not self.word.startswith("operator")
 
 
-def places(path):
+def places(path: str) -> list[Place]:
     """For each line of a tangled header the (chapter, line) that it comes from."""
     # a header may be older than its chapter's lines; then the same code with today's lines is beside it (tangle.py)
     today = path + ".lines"
@@ -39,9 +42,10 @@ def places(path):
         return [("", 0) if LINE.match(text) else next(code) for text in lines]
 
 
-def places_of_code(path):
+def places_of_code(path: str) -> list[Place]:
     """The same for the lines that are no directives."""
-    origin, out = ("", 0), []
+    origin: Place = ("", 0)
+    out = []
     with open(path, encoding="utf-8") as lines:
         for text in lines:
             if directive := LINE.match(text):
@@ -52,7 +56,7 @@ def places_of_code(path):
     return out
 
 
-def is_public(tag):
+def is_public(tag: dict[str, Any]) -> bool:
     """What a user may name; neither constructors, which the class stands for, nor what is called a detail."""
     scope, name = tag.get("scope", ""), tag["name"]
     if not scope.startswith(NAMESPACE) or "detail" in scope or "__anon" in scope + name:
@@ -64,7 +68,7 @@ def is_public(tag):
     return tag["scopeKind"] == "namespace" or tag.get("access") == "public"
 
 
-def public(folder):
+def public(folder: str) -> list[Name]:
     """All public names of the headers below a folder, in the order of the files and lines."""
     headers = sorted(glob.glob(os.path.join(folder, "*", "*.hpp")))
     command = ["ctags", "--output-format=json", "--languages=C++", "--kinds-C++=+p-d", "--fields=+ansK", "--sort=no",
@@ -73,7 +77,8 @@ def public(folder):
         done = subprocess.run(command, input="\n".join(headers), capture_output=True, text=True, check=True)
     except FileNotFoundError:
         raise Problem("ctags", 0, "not found; Debian's package universal-ctags brings it") from None
-    origins, names = {}, []
+    origins: dict[str, list[Place]] = {}
+    names = []
     for line in done.stdout.splitlines():
         tag = json.loads(line)
         if "scopeKind" not in tag or not is_public(tag):
@@ -88,7 +93,7 @@ def public(folder):
     return names
 
 
-def check(names, defined):
+def check(names: Iterable[Name], defined: Collection[str]) -> list[Problem]:
     """A problem for each name that its author must define and did not."""
     return [Problem(name.path, name.line, f"{name.full} is public, but no `@ %def` defines it for the index")
             for name in names if name.needs_def() and name.word not in defined]

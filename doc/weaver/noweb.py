@@ -18,45 +18,45 @@ USE = "\x01{}\x02"  # stands in a chunk's text where another chunk is used: its 
 class Chunk:
     """One chunk definition. Labels are noweb's; a chunk continued later has one label for each piece."""
 
-    def __init__(self, chapter):
+    def __init__(self, chapter: "Chapter") -> None:
         self.chapter = chapter
         self.name = self.label = self.text = ""
-        self.used_chunks = []  # (name, label of its first piece, "" if undefined)
-        self.used_in = []      # labels of the chunks that use this one
-        self.links = {}        # identifier -> label of the chunk that defines it
-        self.defines = []      # (identifier, labels of the chunks that use it)
+        self.used_chunks: list[tuple[str, str]] = []  # (name, label of its first piece, "" if undefined)
+        self.used_in: list[str] = []  # labels of the chunks that use this one
+        self.links: dict[str, str] = {}  # identifier -> label of the chunk that defines it
+        self.defines: list[tuple[str, list[str]]] = []  # (identifier, labels of the chunks that use it)
         self.number = 0        # in the order of the book, from 1
         self.line = 0          # of its chapter, where its first line of code stands
-        self.pieces = []       # all chunks of this name, in order
+        self.pieces: list[Chunk] = []  # all chunks of this name, in order
 
 
 class Chapter:
     """One file: its path and its text, a list of LaTeX strings and Chunks."""
 
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         self.path = path
-        self.parts = [""]
-        self.chunks = []
+        self.parts: list[str | Chunk] = [""]
+        self.chunks: list[Chunk] = []
         self.lines = 0  # read so far
 
-    def latex(self):
+    def latex(self) -> str:
         """The prose, line for line; a chunk is \\litchunk{label} and as many empty lines as it has of code."""
-        return "".join(part if isinstance(part, str) else rf"\litchunk{{{part.label}}}" for part in self.parts)
+        return "".join(rf"\litchunk{{{part.label}}}" if isinstance(part, Chunk) else part for part in self.parts)
 
 
-def quote_latex(code):
+def quote_latex(code: str) -> str:
     """LaTeX that prints the characters of some code as they are."""
     special = {"\\": r"\char92{}", "^": r"\char94{}", "~": r"\char126{}", "'": r"\textquotesingle{}",
                "`": r"\textasciigrave{}", '"': r"\char34{}", "<": "<{}", ">": ">{}", "-": "-{}"}
     return "".join(special.get(c, "\\" + c if c in "{}$&#_%" else c) for c in code)
 
 
-def pipeline(paths):
+def pipeline(paths: list[str]) -> list[str]:
     first = [f"{LIB}/markup", *paths]
     stages = [first, [f"{LIB}/finduses"], [f"{LIB}/noidx"]]
     text = b""
     for stage in stages:
-        done = subprocess.run(stage, input=text, capture_output=True)
+        done = subprocess.run(stage, input=text, capture_output=True, check=False)
         if done.returncode or done.stderr:
             raise RuntimeError(f"{stage[0]}: {done.stderr.decode().strip() or done.returncode}")
         text = done.stdout
@@ -66,17 +66,17 @@ def pipeline(paths):
 class Reader:
     """Takes the pipeline's lines one by one; `@key rest` calls the method `on_key(rest)`."""
 
-    def __init__(self):
-        self.chapters = []
+    def __init__(self) -> None:
+        self.chapters: list[Chapter] = []
         self.inside = False    # between @begin and @end; noidx puts empty lines after the last chapter
-        self.chunk = None      # the chunk whose code is being read
+        self.chunk: Chunk | None = None  # the chunk whose code is being read
         self.defining = False  # between @begin code and the end of its first line
         self.quoting = False
         self.reference = ""    # the label that belongs to the next @use or @index use
         self.link = ""         # where the next quoted word is defined
-        self.users = []
+        self.users: list[str] = []
 
-    def read(self, lines):
+    def read(self, lines: list[str]) -> list[Chapter]:
         methods = {"@" + name[3:]: getattr(self, name) for name in dir(self) if name.startswith("on_")}
         for line in lines:
             key, _, rest = line.partition(" ")
@@ -84,39 +84,40 @@ class Reader:
                 methods[key](rest)
         return self.chapters
 
-    def write(self, latex):
+    def write(self, latex: str) -> None:
         parts = self.chapters[-1].parts
         if isinstance(parts[-1], str):
             parts[-1] += latex
         else:
             parts.append(latex)
 
-    def next_line(self):
+    def next_line(self) -> None:
         self.write("\n")
         self.chapters[-1].lines += 1
 
-    def on_file(self, path):
+    def on_file(self, path: str) -> None:
         self.chapters.append(Chapter(path))
 
-    def on_begin(self, rest):
+    def on_begin(self, rest: str) -> None:
         self.inside = True
         if rest.startswith("code"):
             self.chunk = Chunk(self.chapters[-1])
             self.defining = True
 
-    def on_defn(self, name):
+    def on_defn(self, name: str) -> None:
+        assert self.chunk
         self.chunk.name = name
         self.chunk.line = self.chapters[-1].lines + 2
         self.chapters[-1].parts.append(self.chunk)
         self.chapters[-1].chunks.append(self.chunk)
 
-    def on_end(self, rest):
+    def on_end(self, rest: str) -> None:
         self.inside = False
-        if rest.startswith("code"):
+        if rest.startswith("code") and self.chunk:
             self.chunk.text = self.chunk.text.rstrip("\n")
             self.chunk = None
 
-    def on_text(self, text):
+    def on_text(self, text: str) -> None:
         if self.chunk:
             self.chunk.text += text
         elif self.quoting and self.link:
@@ -125,7 +126,7 @@ class Reader:
         else:
             self.write(quote_latex(text) if self.quoting else text)
 
-    def on_nl(self, _):
+    def on_nl(self, _: str) -> None:
         if not self.inside:
             return
         self.next_line()
@@ -133,20 +134,20 @@ class Reader:
             self.chunk.text += "\n"
         self.defining = False
 
-    def on_quote(self, _):
+    def on_quote(self, _: str) -> None:
         self.quoting = True
         self.write(r"\litcode{")
 
-    def on_endquote(self, _):
+    def on_endquote(self, _: str) -> None:
         self.quoting = False
         self.write("}")
 
-    def on_use(self, name):
+    def on_use(self, name: str) -> None:
         if self.chunk:
             self.chunk.text += USE.format(len(self.chunk.used_chunks))
             self.chunk.used_chunks.append((name, "" if self.reference == "nw@notdef" else self.reference))
 
-    def on_xref(self, rest):
+    def on_xref(self, rest: str) -> None:
         what, _, label = rest.partition(" ")
         if what == "ref":
             self.reference = label
@@ -155,7 +156,7 @@ class Reader:
         elif what == "useitem" and self.chunk:
             self.chunk.used_in.append(label)
 
-    def on_index(self, rest):
+    def on_index(self, rest: str) -> None:
         what, _, value = rest.partition(" ")
         if what == "use" and self.chunk:
             self.chunk.links[value] = self.reference
@@ -172,10 +173,11 @@ class Reader:
             self.users = []
 
 
-def read(paths):
+def read(paths: list[str]) -> list[Chapter]:
     """The chapters of the files, in order, with all chunks numbered and joined to their pieces."""
     chapters = Reader().read(pipeline(paths))
-    names, number = {}, 0
+    names: dict[str, list[Chunk]] = {}
+    number = 0
     for chapter in chapters:
         for chunk in chapter.chunks:
             number += 1
@@ -186,6 +188,6 @@ def read(paths):
     return chapters
 
 
-def plain(name):
+def plain(name: str) -> str:
     """A chunk's name without the brackets around quoted code."""
     return re.sub(r"\[\[(.*?)\]\]", r"\1", name)

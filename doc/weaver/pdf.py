@@ -10,6 +10,7 @@ LaTeX is told with the line of the chapter. The pages must be good as well: a
 line that sticks out by more than 2 pt, a reference to nothing or a character
 that the fonts lack stops the book.
 """
+import argparse
 import concurrent.futures
 import glob
 import os
@@ -29,7 +30,7 @@ WRONG = re.compile(r"Overfull \\[hv]box \(([\d.]+)pt too|^LaTeX Warning: (?:Refe
 LINES = re.compile(r"at lines? (\d+)|on input line (\d+)")
 
 
-def to_pdf(source, target):
+def to_pdf(source: str, target: str) -> tuple[str, float]:
     """A figure for LuaLaTeX: SVG becomes PDF, a picture stays as it is. Returns the name and the width in points."""
     os.makedirs(os.path.dirname(target), exist_ok=True)
     if source.endswith(".png"):
@@ -40,7 +41,7 @@ def to_pdf(source, target):
     target += ".pdf"
     if not os.path.exists(target) or os.path.getmtime(target) < os.path.getmtime(source):
         done = subprocess.run(["rsvg-convert", "--format=pdf", "--dpi-x=96", "--dpi-y=96", f"--output={target}", source],
-                              capture_output=True, text=True)
+                              capture_output=True, text=True, check=False)
         if done.returncode:
             raise Problem(source, 0, done.stderr.strip())
     with open(source, encoding="utf-8") as file:
@@ -51,13 +52,13 @@ def to_pdf(source, target):
 class PdfBook(book.Book):
     """The book as LaTeX."""
 
-    def __init__(self, options):
+    def __init__(self, options: argparse.Namespace) -> None:
         super().__init__(options)
         self.listings = listing.TexListing(self.chapters, self.names)
         self.work = options.work
         os.makedirs(self.work, exist_ok=True)
 
-    def put(self, name, text):
+    def put(self, name: str, text: str) -> None:
         """Writes a file of LaTeX, if it changed."""
         path = os.path.join(self.work, name)
         if os.path.exists(path):
@@ -67,7 +68,7 @@ class PdfBook(book.Book):
         with open(path, "w", encoding="utf-8") as new:
             new.write(text)
 
-    def write(self):
+    def write(self) -> None:
         """All files that LuaLaTeX reads."""
         self.links.check(self.pages())
         bibliography = self.links.bibliography_page()
@@ -85,26 +86,29 @@ class PdfBook(book.Book):
         self.put("malus.tex", self.frame())
         shutil.copyfile(os.path.join(self.options.book, "malus.sty"), os.path.join(self.work, "malus.sty"))
 
-    def figures(self):
+    def figures(self) -> dict[str, tuple[str, float]]:
         """{name in the prose: (file, width)}"""
-        def convert(item):
+        def convert(item: tuple[str, str]) -> tuple[str, tuple[str, float]]:
             name, path = item
             file, width = to_pdf(path, os.path.join(self.work, "figures", name))
             return name, (os.path.relpath(file, self.work), width)
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             return dict(pool.map(convert, self.links.figures.items()))
 
-    def figure(self, name, file):
+    def figure(self, name: str, file: str) -> str:
         """A picture; over the boxes of a drawing with links lie links."""
         drawing = self.links.drawing(name)
         if not drawing:
             return rf"\litfigure{{{file}}}"
-        width, height = map(float, re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)', drawing).groups())
+        box = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)', drawing)
+        if not box:
+            raise Problem(name, 0, "a drawing with links needs a viewBox that begins at 0 0")
+        width, height = map(float, box.groups())
         boxes = "".join(rf"\litbox{{{x}}}{{{height - float(y) - float(h):g}}}{{{w}}}{{{h}}}{{{label}}}"
                         for label, x, y, w, h in book.DRAWN_LINK.findall(drawing))
         return rf"\litdrawing{{{file}}}{{{width:g}}}{{{height:g}}}{{{boxes}}}"
 
-    def frame(self):
+    def frame(self) -> str:
         """The whole book: what stands before, between and after the chapters."""
         about = self.about["book"]
         after = re.sub(r"<cite>(.*?)</cite>", r"\\emph{\1}", about["after"])
@@ -135,31 +139,34 @@ class PdfBook(book.Book):
                 self.listings.identifier_index(), r"\end{litindex}", r"\end{document}", ""]
         return "\n".join(out)
 
-    def run(self):
+    def run(self) -> None:
         """LuaLaTeX until the references stand still."""
         environment = dict(os.environ, TEXMFVAR=os.path.abspath(os.path.join(self.work, "texmf-var")),
                            max_print_line="1000", openout_any="p")
         command = ["lualatex", "--interaction=nonstopmode", "--halt-on-error", "--file-line-error", "malus.tex"]
-        before = None
+        before: list[str] | None = None
         for _ in range(RUNS):
-            done = subprocess.run(command, cwd=self.work, env=environment, capture_output=True, text=True, errors="replace")
+            done = subprocess.run(command, cwd=self.work, env=environment, capture_output=True, text=True, errors="replace",
+                                  check=False)
             self.complain(errors_only=True)
             if done.returncode:
                 raise Problem("malus.tex", 0, done.stdout[-2000:])
             now = [self.read(path) for path in sorted(glob.glob(os.path.join(self.work, "malus.[ato][uo][xct]")))]
             if now == before:
-                return self.complain()
+                self.complain()
+                return
             before = now
         raise Problem("malus.tex", 0, f"LuaLaTeX's references still move after {RUNS} runs")
 
     @staticmethod
-    def read(path):
+    def read(path: str) -> str:
         with open(path, encoding="utf-8", errors="replace") as file:
             return file.read()
 
-    def complain(self, errors_only=False):
+    def complain(self, errors_only: bool = False) -> None:
         """What LuaLaTeX's log says is wrong, told with the chapter and the line."""
-        problems, source = [], "malus.tex"
+        problems: list[Problem] = []
+        source = "malus.tex"
         sources = {page.name: page.source for page in self.pages()}
         for line in self.read(os.path.join(self.work, "malus.log")).splitlines():
             if line.startswith(MARK):
@@ -172,7 +179,7 @@ class PdfBook(book.Book):
         stop_if_any(problems)
 
 
-def main(options):
+def main(options: argparse.Namespace) -> None:
     whole = PdfBook(options)
     whole.gather()
     whole.write()

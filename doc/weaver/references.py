@@ -1,85 +1,86 @@
-"""Reads doc/bibliography.bib and writes its entries as LaTeX for the book's last pages.
-
-Only what our file needs of BibTeX's language is understood: entries whose
-fields are in braces. Anything else stops the book with the line.
-"""
+"""Reads doc/bibliography.bib by pybtex and writes its entries as LaTeX for the book's last pages."""
 import re
+from collections.abc import Iterable
+
+import pybtex.database
+from pybtex.scanner import PybtexError
 
 from problems import Problem
 
-BEGIN = re.compile(r"@(\w+)\{([\w:.-]+),\s*")
-FIELD = re.compile(r"(\w+)\s*=\s*\{")
 NEEDED = {"article": ("author", "title", "journal", "year"), "book": ("title", "publisher", "year"),
           "incollection": ("author", "title", "booktitle", "year"),
           "inproceedings": ("author", "title", "booktitle", "year"), "misc": ("title",),
           "phdthesis": ("author", "title", "school", "year"), "techreport": ("author", "title", "institution", "year")}
 
 
-class Entry(dict):
-    """The fields of one entry; kind and line beside them."""
+class Entry:
+    """One entry: its kind, its fields, and its people as they sign."""
 
-    def __init__(self, kind, line):
-        super().__init__()
-        self.kind = kind
-        self.line = line
+    def __init__(self, entry: pybtex.database.Entry) -> None:
+        self.kind: str = entry.type
+        self.fields = {name.lower(): text for name, text in entry.fields.items()}
+        self.authors, self.editors = ([signed(person) for person in entry.persons.get(role, ())] for role in ("author", "editor"))
+        first = (entry.persons.get("author") or entry.persons.get("editor") or [None])[0]
+        self.family: str = family(first) if first else self.fields.get("title", "")
+
+    def get(self, name: str, default: str = "") -> str:
+        """A field that may be missing."""
+        return self.fields.get(name, default)
+
+    def has(self, name: str) -> bool:
+        """Whether a needed field is there."""
+        return bool(self.authors) if name == "author" else name in self.fields
 
 
-def closing(text, start):
-    """Where the brace closes that was opened just before start."""
-    depth = 1
-    for place in range(start, len(text)):
-        if text[place] in "{}" and text[place - 1] != "\\":
-            depth += 1 if text[place] == "{" else -1
-            if depth == 0:
-                return place
-    return len(text)
+def family(person: pybtex.database.Person) -> str:
+    """'van de Hulst' of 'van de Hulst, Hendrik C.'"""
+    return " ".join(person.prelast_names + person.last_names)
 
 
-def read(path):
+def signed(person: pybtex.database.Person) -> str:
+    """'Hendrik C. van de Hulst'"""
+    return " ".join(person.first_names + person.middle_names + person.prelast_names + person.last_names + person.lineage_names)
+
+
+def read(path: str) -> dict[str, Entry]:
     """All entries by key; Problem if the file cannot be understood."""
     with open(path, encoding="utf-8") as file:
         text = "".join("\n" if line.startswith("%") else line for line in file)
-    entries = {}
-    for begin in BEGIN.finditer(text):
-        line = text.count("\n", 0, begin.start()) + 1
-        entry = Entry(begin[1].lower(), line)
-        if begin[2] in entries:
-            raise Problem(path, line, f"a second entry has the key {begin[2]}")
-        end, place = closing(text, begin.end(1) + 1), begin.end()
-        while field := FIELD.search(text, place, end):
-            place = closing(text, field.end())
-            entry[field[1].lower()] = " ".join(text[field.end():place].split())
+    try:
+        found = pybtex.database.parse_string(text, "bibtex").entries
+    except PybtexError as error:
+        raise Problem(path, getattr(error, "lineno", None) or line_of(text, str(error).rsplit(" ", maxsplit=1)[-1]), str(error)) from None
+    entries = {key: Entry(entry) for key, entry in found.items()}
+    for key, entry in entries.items():
         for name in NEEDED.get(entry.kind, ("an entry kind that references.py knows",)):
-            if name not in entry:
-                raise Problem(path, line, f"{begin[2]} lacks {name}")
-        entries[begin[2]] = entry
+            if not entry.has(name):
+                raise Problem(path, line_of(text, key), f"{key} lacks {name}")
     return entries
 
 
-def people(names):
-    """'Born, Max and Wolf, Emil' as 'Max Born and Emil Wolf'."""
-    turned = [" ".join(reversed(name.split(", ", 1))) for name in names.split(" and ")]
-    if len(turned) < 3:
-        return " and ".join(turned)
-    return ", ".join(turned[:-1]) + " and " + turned[-1]
+def line_of(text: str, key: str) -> int:
+    """Where the last entry with a key begins, since the first of two is good."""
+    begins = [match.start() for match in re.finditer(rf"@\w+\{{{re.escape(key)},", text)]
+    return text.count("\n", 0, begins[-1]) + 1 if begins else 0
 
 
-def family(entry):
-    return entry.get("author", entry.get("editor", entry["title"])).split(",")[0]
+def people(names: list[str]) -> str:
+    """'Max Born and Emil Wolf'"""
+    return " and ".join(names) if len(names) < 3 else ", ".join(names[:-1]) + " and " + names[-1]
 
 
-def ordered(keys, entries):
+def ordered(keys: Iterable[str], entries: dict[str, Entry]) -> list[str]:
     """Keys in the order in which the book lists and numbers them: by name, then year."""
-    return sorted(keys, key=lambda key: (re.sub(r"\W", "", family(entries[key])).lower(), entries[key].get("year"), key))
+    return sorted(keys, key=lambda key: (re.sub(r"\W", "", entries[key].family).lower(), entries[key].get("year"), key))
 
 
-def source(entry):
+def source(entry: Entry) -> list[str]:
     """Where the work appeared, after author and title."""
     get = entry.get
     if entry.kind == "article":
         number = f"({get('number')})" if get("number") else ""
         pages = f":{get('pages')}" if get("pages") else ""
-        return [rf"\emph{{{get('journal')}}} {get('volume', '')}{number}{pages}", get("year")]
+        return [rf"\emph{{{get('journal')}}} {get('volume')}{number}{pages}", get("year")]
     if entry.kind in ("inproceedings", "incollection"):
         volume = f", volume {get('volume')}" if get("volume") else ""
         pages = f", pages {get('pages')}" if get("pages") else ""
@@ -87,19 +88,20 @@ def source(entry):
     if entry.kind == "phdthesis":
         return ["PhD thesis", get("school"), get("address"), get("year")]
     if entry.kind == "techreport":
-        return [f"{get('type', 'Technical report')} {get('number', '')}".strip(), get("institution"), get("address"),
-                get("year")]
-    series = f"{get('series')} {get('number', '')}".strip() if get("series") else None
-    edition = f"{get('edition')} edition" if get("edition") else None
+        return [f"{get('type', 'Technical report')} {get('number')}".strip(), get("institution"), get("address"), get("year")]
+    series = f"{get('series')} {get('number')}".strip() if get("series") else ""
+    edition = f"{get('edition')} edition" if get("edition") else ""
     return [edition, series, get("publisher"), get("address"), get("howpublished"), get("year")]
 
 
-def latex(entry):
+def latex(entry: Entry) -> str:
     """One entry as a paragraph of LaTeX."""
-    who = people(entry.get("author") or entry.get("editor", ""))
-    if who and not entry.get("author"):
-        who += ", editors" if " and " in who else ", editor"
-    title = entry["title"] if entry.kind in ("article", "inproceedings", "incollection") else rf"\emph{{{entry['title']}}}"
+    who = people(entry.authors or entry.editors)
+    if who and not entry.authors:
+        who += ", editors" if len(entry.editors) > 1 else ", editor"
+    title = entry.get("title")
+    if entry.kind not in ("article", "inproceedings", "incollection"):
+        title = rf"\emph{{{title}}}"
     where = ", ".join(part for part in source(entry) if part)
     text = ". ".join(part for part in (who, title, where, entry.get("note")) if part) + "."
     if doi := entry.get("doi"):

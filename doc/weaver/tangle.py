@@ -28,28 +28,30 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from typing import NoReturn
 
 LINE_DIRECTIVE = re.compile(r"^#line .*\n", re.MULTILINE)
 
 
-def fail(chapter, messages):
+def fail(chapter: str, messages: list[str]) -> NoReturn:
     for message in messages:
         print(f"{chapter}: {message}", file=sys.stderr)
     sys.exit(1)
 
 
-def run(command):
-    done = subprocess.run(command, capture_output=True, text=True)
+def run(command: list[str]) -> tuple[int, str, str]:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout, done.stderr.strip()
 
 
-def roots_of(chapter):
+def roots_of(chapter: str) -> tuple[list[str], str]:
     _, listed, complaint = run(["noroots", chapter])
     names = [line[2:-2] for line in listed.splitlines() if line.startswith("<<")]
     return names, complaint
 
 
-def check_roots(chapter, expected):
+def check_roots(chapter: str, expected: list[str]) -> None:
     found, complaint = roots_of(chapter)
     problems = [complaint] if complaint else []
     problems += [
@@ -65,24 +67,24 @@ def check_roots(chapter, expected):
         fail(chapter, problems)
 
 
-def tangled(chapter, name, directives):
+def tangled(chapter: str, name: str, directives: bool) -> str:
     code, text, complaint = run(["notangle", *(["-L"] if directives else []), f"-R{name}", chapter])
     if code or complaint:
         fail(chapter, (complaint or f"notangle gave {code}").splitlines())
     return text
 
 
-def same_code(old, new):
+def same_code(old: str, new: str) -> bool:
     return LINE_DIRECTIVE.sub("", old) == LINE_DIRECTIVE.sub("", new)
 
 
-def old_text(path):
+def old_text(path: str) -> str | None:
     with contextlib.suppress(FileNotFoundError), open(path, encoding="utf-8") as file:
         return file.read()
     return None
 
 
-def write_if_changed(path, text):
+def write_if_changed(path: str, text: str) -> None:
     if old_text(path) == text:
         return
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -92,7 +94,7 @@ def write_if_changed(path, text):
     os.replace(fresh, path)
 
 
-def write_header(path, text, may_keep):
+def write_header(path: str, text: str, may_keep: bool) -> None:
     old, lines = old_text(path), path + ".lines"
     if may_keep and old is not None and old != text and same_code(old, text):
         write_if_changed(lines, text)
@@ -103,7 +105,7 @@ def write_header(path, text, may_keep):
 
 
 @contextlib.contextmanager
-def locked(folder):
+def locked(folder: str) -> Iterator[None]:
     os.makedirs(folder, exist_ok=True)
     descriptor = os.open(folder, os.O_RDONLY)
     try:
@@ -113,12 +115,12 @@ def locked(folder):
         os.close(descriptor)  # which gives the lock back
 
 
-def state(chapter):
+def state(chapter: str) -> tuple[int, int, int]:
     seen = os.stat(chapter)
     return seen.st_ino, seen.st_size, seen.st_mtime_ns
 
 
-def tangle(out, chapter, names, directives, exact):
+def tangle(out: str, chapter: str, names: list[str], directives: bool, exact: bool) -> bool:
     """False if the chapter changed meanwhile; then nothing is written."""
     before = state(chapter)
     check_roots(chapter, names)
@@ -135,7 +137,7 @@ def tangle(out, chapter, names, directives, exact):
     return True
 
 
-def main():
+def main() -> None:
     arguments = sys.argv[1:]
     options = {argument for argument in arguments if argument.startswith("--")}
     arguments = [argument for argument in arguments if argument not in options]

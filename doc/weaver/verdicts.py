@@ -14,9 +14,13 @@ import csv
 import json
 import os
 import re
+from typing import TYPE_CHECKING, Any
 
 import noweb
 from problems import Problem, stop_if_any
+
+if TYPE_CHECKING:
+    from book import Page
 
 ERRATUM = re.compile(r"^\\erratum\{")
 ROW = re.compile(r'\{"([^"]+)", (\w+)\}')
@@ -32,15 +36,16 @@ BEGIN_CLAIMS = (r"{\litsmall\begin{longtable}{l" + "".join(f"{ROUGH}{{{width}\\t
 END = r"\bottomrule\end{longtable}}"
 
 
-def plain(words):
+def plain(words: str) -> str:
     """Words of the report as LaTeX."""
     text = noweb.quote_latex(words).replace("-{}", "-").replace("<{}", "$<$").replace(">{}", "$>$")
     return text.replace(r"\textquotesingle{}", "'").replace("|", r"\textbar{}")
 
 
-def arguments(line):
+def arguments(line: str) -> list[str]:
     """The arguments of a macro that stands alone on a line."""
-    out, depth, begin = [], 0, 0
+    out: list[str] = []
+    depth = begin = 0
     for place, character in enumerate(line):
         if character == "{" and line[place - 1] != "\\":
             depth += 1
@@ -56,19 +61,19 @@ def arguments(line):
 class Verdicts:
     """What the report says, for the pages that ask for it."""
 
-    def __init__(self, report, inventory=None):
+    def __init__(self, report: str, inventory: str | None = None) -> None:
         path = os.path.join(report, "report.json")
-        self.items = []
+        self.items: list[dict[str, Any]] = []
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:
                 self.items = json.load(file)["items"]
-        self.listed = []  # rows of the inventory, those without a function as well
+        self.listed: list[dict[str, str]] = []  # rows of the inventory, those without a function as well
         if inventory:
             with open(inventory, encoding="utf-8") as file:
                 self.listed = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.claims = {f"{item['id']}/{claim['name']}": claim for item in self.items for claim in item["claims"]}
 
-    def substitute(self, page, chapters, pages):
+    def substitute(self, page: "Page", chapters: list[noweb.Chapter], pages: list["Page"]) -> None:
         """Writes the tables into a page, line for line."""
         if r"\begin{errata}" in page.latex:
             self.errata(page)
@@ -77,27 +82,32 @@ class Verdicts:
 
         page.latex = CLAIMS.sub(lambda match: self.table_of(page, match[1].split()), page.latex)
 
-    def table_of(self, page, ids):
+    def table_of(self, page: "Page", ids: list[str]) -> str:
         """What these items claim, in their order; a row that repeats another is left out."""
         rows, found = [], {item["id"]: item for item in self.items}
-        stop_if_any([Problem(page.source, 0, rf"\claims names {name}, which is no item of the report") for name in ids if name not in found])
+        stop_if_any([Problem(page.source, 0, rf"\claims names {name}, which is no item of the report")
+                     for name in ids if name not in found])
         for name in ids:
             for claim in found[name]["claims"]:
                 if claim["repeats"]:
                     continue
                 sentence = f"{claim['sentence']}: {claim['quantity']}" if claim["quantity"] else claim["sentence"]
                 fitted = f"; fitted, {claim['unknowns']} unknowns" if claim["fit"] else ""
-                rows.append(rf"\litto{{{name}}}{{{name}}} & {plain(sentence)} & {plain(claim['criterion'])} ({claim['source']}{fitted}) & {claim['verdict']} \\")
+                rows.append(rf"\litto{{{name}}}{{{name}}} & {plain(sentence)} & {plain(claim['criterion'])}"
+                            rf" ({claim['source']}{fitted}) & {claim['verdict']} \\")
         return BEGIN_CLAIMS + " ".join(rows) + END
 
-    def errata(self, page):
-        problems, told, lines = [], set(), page.latex.split("\n")
+    def errata(self, page: "Page") -> None:
+        problems: list[Problem] = []
+        told: set[str] = set()
+        lines = page.latex.split("\n")
         for number, line in enumerate(lines, 1):
             if not ERRATUM.match(line):
                 continue
             parts = arguments(line)
             if len(parts) != 5:
-                problems.append(Problem(page.source, number, r"\erratum wants five arguments: place, as printed, as derived, effect, claims"))
+                problems.append(Problem(page.source, number,
+                                        r"\erratum needs five arguments: place, as printed, as derived, effect, claims"))
                 continue
             place, printed, derived, effect, names = parts
             evidence = []
@@ -116,23 +126,23 @@ class Verdicts:
         stop_if_any(problems)
         page.latex = "\n".join(lines).replace(r"\begin{errata}", BEGIN_ERRATA).replace(r"\end{errata}", END)
 
-    def inventory(self, page, chapters, pages):
+    def inventory(self, page: "Page", chapters: list[noweb.Chapter], pages: list["Page"]) -> str:
         """All items of the report, in its order, and what the inventory lists besides."""
         homes = {word: chunk for chapter in chapters for chunk in chapter.chunks for word, _ in chunk.defines}
-        functions = {}
+        functions: dict[str, str] = {}
         for chapter in chapters:
             if chapter.path == page.source:
                 functions = {match[1]: match[2] for chunk in chapter.chunks for match in ROW.finditer(chunk.text)}
-        labels = {other.source: re.search(r"\\label\{(ch:[^}]*)\}", other.latex) for other in pages}
+        labels = {other.source: label[1] for other in pages if (label := re.search(r"\\label\{(ch:[^}]*)\}", other.latex))}
         rows, problems = [], []
         for item in self.items:
-            home = homes.get(functions.get(item["id"]))
+            home = homes.get(functions.get(item["id"], ""))
             if not home:
                 problems.append(Problem(page.source, 0, f"item {item['id']} leads to no function that an `@ %def` defines"))
                 continue
             counts = " & ".join(str(item["counts"].get(verdict) or "") for verdict in VERDICTS)
             rows.append(rf"\lititem{{{item['id']}}}{{{item['id']}}} & {plain(item['title'])} & {plain(item['place'])} & {counts} & "
-                        rf"chapter~\ref{{{labels[home.chapter.path][1]}}}, \litlink{{{home.label}}}{{code}} \\")
+                        rf"chapter~\ref{{{labels[home.chapter.path]}}}, \litlink{{{home.label}}}{{code}} \\")
         built = {item["id"] for item in self.items}
         rows += [rf"\lititem{{{row['id']}}}{{{row['id']}}} & {plain(row['title'])} & {plain(row['place'])} & & & & & not built \\"
                  for row in self.listed if row["id"] not in built]

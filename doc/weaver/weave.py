@@ -12,21 +12,28 @@ the old book as it was.
 
 noweb.py reads the chapters, listing.py renders their chunks, latexml.py
 converts their prose, references.py reads the bibliography, and this program
-joins them: it checks what the prose refers to, lays out the pages, and copies
-the figures.
+joins them: it checks what the prose refers to, finishes the trees of the
+pages, fills in the templates of the theme, and copies the figures.
 """
+import argparse
+import copy
 import filecmp
+import functools
 import os
 import re
 import shutil
-import string
-from html import escape, unescape
+from html import escape
+from typing import Any
+
+import jinja2
+import lxml.html
+from lxml import etree
+from lxml.builder import E
 
 import book
 import finder
 import latexml
 import listing
-import references
 from book import Page
 from problems import Problem
 
@@ -37,151 +44,311 @@ FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular
          "/usr/share/texmf/fonts/opentype/public/tex-gyre-math/texgyrepagella-math.otf"]
 
 INDEXES = {"chunks": "Chunks", "identifiers": "Identifiers"}
+Element = Any  # lxml brings no types
+
+
+# ---------------------------------------------------------------- trees
+def inner(element: Element) -> str:
+    """The HTML between the tags of an element."""
+    text: str = lxml.html.tostring(element, encoding="unicode", with_tail=False)
+    return text[text.index(">") + 1:text.rindex("<")]
+
+
+def has_class(element: Element, name: str) -> bool:
+    """Whether it is one of the element's classes."""
+    return name in element.get("class", "").split()
+
+
+def replace(old: Element, new: Element) -> None:
+    """Puts an element in the place of another."""
+    new.tail = old.tail
+    old.getparent().replace(old, new)
+
+
+def wrap(element: Element, wrapper: Element) -> None:
+    """Puts an element into a new one, which takes its place."""
+    replace(element, wrapper)
+    element.tail = None
+    wrapper.append(element)
+
+
+def text_before(element: Element) -> str:
+    """The text between an element and the tag before it."""
+    before = element.getprevious()
+    return (before.tail if before is not None else element.getparent().text) or ""
+
+
+def set_text_before(element: Element, text: str) -> None:
+    """Replaces the text between an element and the tag before it."""
+    before = element.getprevious()
+    if before is not None:
+        before.tail = text
+    else:
+        element.getparent().text = text
+
+
+def is_bare(element: Element, tags: tuple[str, ...], letters: str) -> bool:
+    """Whether an element has one of these tags, no attributes, and one of these letters as its text."""
+    return (element is not None and element.tag in tags and not element.attrib and len(element) == 0
+            and bool(element.text) and len(element.text) == 1 and element.text in letters)
+
 
 # ---------------------------------------------------------------- from LaTeXML's HTML to a page's body
 class Finisher:
     """Fills the holes in LaTeXML's HTML and makes it ours."""
 
-    HOLE = re.compile(r'<div class="ltx_para">\s*<p class="ltx_p lit-chunk">([^<]*)</p>\s*</div>')
-    BARE_HOLE = re.compile(r'<p class="ltx_p lit-chunk">([^<]*)</p>')
-    HEADING = re.compile(r'(<section id="([^"]*)" class="ltx_(\w+)[^"]*">\s*)<h\d( class="ltx_title[^"]*")>(.*?)</h\d>',
-                         re.DOTALL)
-    FIGURE = re.compile(r'<span class="ltx_text lit-figure">([^<]*)</span>')
-    TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
-    LONG_FORMULA = re.compile(r'<math[^>]*alttext="(?!\\displaystyle)[^"]{46,}" display="inline".*?</math>', re.DOTALL)
-    GLUED = re.compile(r"""([(\[“‘]*)(<math\b[^>]*display="inline".*?</math>)([.,;:?!)\]”’]*)""", re.DOTALL)
-    FENCE = re.compile(r"(<mo)(>[(\[|‖{]</mo><mtable)|(</mtable><mo)(>[)\]|‖}]</mo>)")
-    PRIME = re.compile(r"<msup>(<m[io][^>]*>[^<]*</m[io]>)<mo>([′″])</mo></msup>")
-    PRIME_AND_INDEX = re.compile(r"<msubsup>(<m[io][^>]*>[^<]*</m[io]>)(<m\w[^>]*>[^<]*</m\w>)<mo>([′″])</mo></msubsup>")
-    KINDS = {"as derived": " cards errata", "left open": " cards left-open", "ltx_eqn": " formula"}  # what a table's head says
+    OPENING, CLOSING = "([“‘", ".,;:?!)]”’"  # what must not be parted from a formula by the end of a line
+    LONG = 46  # a formula whose source has more letters may be broken
+    KINDS = {"as derived": " cards errata", "left open": " cards left-open"}  # what a table's head says
     LEVELS = {"chapter": 1, "section": 2, "subsection": 3, "subsubsection": 4, "paragraph": 5}
+    HOLE = re.compile(r"<!--hole (\d+)-->")
+    PAPER = re.compile(r"font-size:\d+%;|width:[\d.]+pt;")
 
-    def __init__(self, links, listings):
+    def __init__(self, links: book.Links, listings: listing.HtmlListing) -> None:
         self.links, self.listings = links, listings
-        self.rendered = {}  # label -> the chunk as HTML
+        self.rendered: dict[str, str] = {}  # label -> the chunk as HTML
+        self.holes: list[str] = []  # what is HTML already, chunks and drawings; put in when the tree becomes text
 
-    def render_chunks(self, page):
+    def render_chunks(self, page: Page) -> None:
+        """The chunks of a page as HTML."""
         for chunk in page.chunks:
             self.rendered[chunk.label] = self.listings.chunk(chunk, self.links.anchors[chunk.label][1])
 
-    def finish(self, page, html):
-        fill = lambda match: self.rendered[match[1]]
-        html = self.BARE_HOLE.sub(fill, self.HOLE.sub(fill, html))
-        html = html.replace(' title=""', "").replace("\n\n", "\n")
-        # paper's sizes: the style sheet says how small a table is and the browser how wide its columns are; a formula
-        # whose every letter has a size would have no small indices
-        html = re.sub(r' mathsize="\d+%"| style="font-size:\d+%;"| style="width:[\d.]+pt;"', "", html)
-        # what may be wider than a phone scrolls by itself
-        html = self.TABLE.sub(self.scroll, html)
-        html = self.GLUED.sub(self.glue, html)
-        html = self.LONG_FORMULA.sub(lambda formula: f'<span class="long">{formula[0]}</span>', html)
-        html = re.sub(r'\s*<span class="ltx_tag ltx_tag_note">.*?</span>\s*', "", html)
-        # as TeX does, a little space around what is in large brackets
-        html = self.FENCE.sub(lambda fence: f'{fence[1]} lspace="0.17em"{fence[2]}' if fence[1] else
-                              f'{fence[3]} rspace="0.17em"{fence[4]}', html)
-        # the font's prime is raised already; raised again it would be small and high
-        html = self.PRIME.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', html)
-        html = self.PRIME_AND_INDEX.sub(r'<msub><mrow>\1<mo lspace="0" rspace="0">\3</mo></mrow>\2</msub>', html)
-        self.above = 0
-        html = self.HEADING.sub(lambda match: self.heading(page, match), html)
-        html = self.FIGURE.sub(lambda match: self.figure(page, match, html), html)
-        page.body = self.resolve(page, html)
+    def finish(self, page: Page) -> None:
+        """All that is done to the tree of a page."""
+        for chunk in page.tree.xpath('.//p[@class="ltx_p lit-chunk"]'):
+            self.chunk(chunk)
+        for element in page.tree.iter(etree.Element):
+            self.without_paper(element)
+        for table in page.tree.xpath(".//table"):
+            self.scroll(table)
+        for formula in page.tree.xpath('.//math[@display="inline"]'):
+            self.glue(formula)
+        for tag in page.tree.xpath('.//span[@class="ltx_tag ltx_tag_note"]'):
+            self.drop_with_space(tag)
+        for matrix in page.tree.xpath(".//mtable"):
+            self.space_in_brackets(matrix)
+        for raised in page.tree.xpath(".//msup | .//msubsup"):
+            self.lower_prime(raised)
+        self.headings(page)
+        for figure in page.tree.xpath('.//span[@class="ltx_text lit-figure"]'):
+            self.figure(page, figure)
+        self.link_items(page)
         page.title = page.title or page.name
 
-    @staticmethod
-    def scroll(table):
-        head = table[0][:table[0].find("</tr>")]
-        kind = next((kind for words, kind in Finisher.KINDS.items() if words in head), "")
-        return f'<div class="scroll{kind}">{table[0]}</div>'
+    def hole(self, html: str) -> Element:
+        """Stands for what is HTML already."""
+        self.holes.append(html)
+        return etree.Comment(f"hole {len(self.holes) - 1}")
 
-    @staticmethod
-    def glue(match):
+    def text(self, page: Page) -> str:
+        """The tree as HTML, with the chunks and drawings in it."""
+        html = inner(page.tree).removeprefix("\n").replace("\n\n", "\n")
+        return self.resolve(page, self.HOLE.sub(lambda match: self.holes[int(match[1])], html))
+
+    def chunk(self, place: Element) -> None:
+        """A chunk is not in a paragraph."""
+        around = place.getparent()
+        hole = self.hole(self.rendered[place.text].replace("\n\n", "\n"))
+        alone = len(around) == 1 and not (around.text or "").strip() and not (place.tail or "").strip()
+        replace(around if around.get("class") == "ltx_para" and alone else place, hole)
+
+    def without_paper(self, element: Element) -> None:
+        """Drops paper's sizes: the style sheet says how small a table is and the browser how wide its columns are; a
+        formula whose every letter has a size would have no small indices."""
+        if element.get("title") == "":
+            del element.attrib["title"]
+        if re.fullmatch(r"\d+%", element.get("mathsize", "")):
+            del element.attrib["mathsize"]
+        if self.PAPER.fullmatch(element.get("style", "")):
+            del element.attrib["style"]
+
+    def scroll(self, table: Element) -> None:
+        """What may be wider than a phone scrolls by itself."""
+        head = table.find(".//tr").text_content()
+        kind = next((kind for words, kind in self.KINDS.items() if words in head), "")
+        if not kind and "ltx_eqn" in table.get("class", ""):
+            kind = " formula"
+        wrap(table, E.div({"class": "scroll" + kind}))
+
+    def glue(self, formula: Element) -> None:
         """A browser may break a line on either side of a formula; a bracket or a comma must not be left alone."""
-        before, formula, after = match.groups()
-        return f'<span class="glued">{before}{formula}{after}</span>' if before or after else formula
+        text, tail = text_before(formula), formula.tail or ""
+        before, after = text[len(text.rstrip(self.OPENING)):], tail[:len(tail) - len(tail.lstrip(self.CLOSING))]
+        source = formula.get("alttext", "")
+        if before or after:
+            set_text_before(formula, text[:len(text) - len(before)])
+            formula.tail = tail[len(after):]
+            glued = E.span({"class": "glued"})
+            wrap(formula, glued)
+            glued.text, formula.tail = before, after
+        if len(escape(source, quote=False)) >= self.LONG and not source.startswith(r"\displaystyle"):
+            after, formula.tail = formula.tail, None
+            wrap(formula, E.span({"class": "long"}))
+            formula.getparent().tail = after
 
-    def heading(self, page, match):
-        before, anchor, kind, classes, title = match.groups()
-        plain = re.sub(r"</?a\b[^>]*>", "", title).strip()
-        if kind == "chapter":
-            page.title = re.sub(r'<span class="ltx_tag[^>]*>.*?</span>', "", plain, flags=re.DOTALL).strip()
-        elif kind == "section":
-            page.sections.append((anchor, plain))
-        level = min(self.LEVELS.get(kind, 6), self.above + 1)  # a paragraph may stand in a section or deeper
-        self.above = level if kind != "paragraph" else self.above
-        mark = f'<a class="permalink" href="#{anchor}" title="a link to this place" aria-label="a link to this place">§</a>'
-        source = ""
-        if kind == "chapter":
-            source = f'\n<p class="source">Edit this chapter: <code>{escape(page.source)}</code></p>'
-        return f"{before}<h{level}{classes}>{title.strip()} {mark}</h{level}>{source}"
+    @staticmethod
+    def drop_with_space(element: Element) -> None:
+        """Drops an element and the space around it."""
+        set_text_before(element, text_before(element).rstrip())
+        element.tail = (element.tail or "").lstrip()
+        element.drop_tree()
 
-    def figure(self, page, match, html):
+    @staticmethod
+    def space_in_brackets(matrix: Element) -> None:
+        """As TeX does, a little space around what is in large brackets."""
+        if is_bare(matrix.getprevious(), ("mo",), "([|‖{"):
+            matrix.getprevious().set("lspace", "0.17em")
+        if is_bare(matrix.getnext(), ("mo",), ")]|‖}"):
+            matrix.getnext().set("rspace", "0.17em")
+
+    @staticmethod
+    def lower_prime(raised: Element) -> None:
+        """The font's prime is raised already; raised again it would be small and high."""
+        base, *index, prime = raised
+        if raised.attrib or base.tag not in ("mi", "mo") or len(base) or not is_bare(prime, ("mo",), "′″"):
+            return
+        if any(len(element) for element in index):
+            return
+        prime.set("lspace", "0")
+        prime.set("rspace", "0")
+        if raised.tag == "msup":
+            raised.tag = "mrow"
+        else:
+            raised.tag = "msub"
+            wrap(base, etree.Element("mrow"))
+            base.getparent().append(prime)
+
+    # ------------------------------------------------------------ headings and figures
+    def headings(self, page: Page) -> None:
+        """The headings get the levels of one page, and links to themselves."""
+        above = 0
+        for section in page.tree.xpath(".//section[@id]"):
+            title = section[0]
+            if not re.fullmatch(r"h\d", title.tag):
+                continue
+            kind = section.get("class").split()[0].removeprefix("ltx_")
+            level = min(self.LEVELS.get(kind, 6), above + 1)  # a paragraph may stand in a section or deeper
+            above = level if kind != "paragraph" else above
+            self.name(page, kind, section.get("id"), title)
+            self.heading(section.get("id"), title, level)
+            if kind == "chapter":
+                source = E.p({"class": "source"}, "Edit this chapter: ", E.code(page.source))
+                after, title.tail = title.tail, None
+                title.addnext(source)
+                title.tail, source.tail = "\n", after
+
+    @staticmethod
+    def name(page: Page, kind: str, anchor: str, title: Element) -> None:
+        """What the contents say."""
+        title = copy.deepcopy(title)
+        etree.strip_tags(title, "a")
+        if kind == "section":
+            page.sections.append((anchor, inner(title).strip()))
+        elif kind == "chapter":
+            for tag in title.xpath('.//span[starts-with(@class, "ltx_tag")]'):
+                tag.drop_tree()
+            page.title = inner(title).strip()
+
+    @staticmethod
+    def heading(anchor: str, title: Element, level: int) -> None:
+        """One heading."""
+        title.tag = f"h{level}"
+        title.text = (title.text or "").lstrip()
+        mark = E.a({"class": "permalink", "href": "#" + anchor, "title": "a link to this place", "aria-label": "a link to this place"}, "§")
+        title.append(mark)
+        set_text_before(mark, text_before(mark).rstrip() + " ")
+
+    def figure(self, page: Page, place: Element) -> None:
         """A picture; its words for those who cannot see it are its caption. A drawing with links is put into the page."""
-        name = unescape(match[1])
+        name = place.text
         path = self.links.figures[name]
-        caption = re.search(r"<figcaption[^>]*>(.*?)</figcaption>", html[match.end():], re.DOTALL)
+        after = place.xpath("following::*[self::figcaption or self::figure][1]")
         words = ""
-        if caption and "<figure" not in html[match.end():match.end() + caption.start()]:
-            formulas = re.sub(r'<math[^>]*alttext="([^"]*)".*?</math>', r"\1", caption[1], flags=re.DOTALL)
-            words = " ".join(unescape(re.sub(r"<[^>]*>", "", formulas)).split())
+        if after and after[0].tag == "figcaption":
+            caption = copy.deepcopy(after[0])
+            for formula in caption.xpath(".//math"):
+                tail, source = formula.tail, formula.get("alttext")
+                formula.clear()
+                formula.text, formula.tail = source, tail
+            words = " ".join(caption.text_content().split())
         if drawing := self.links.drawing(name):
             drawing = book.DRAWN_LINK.sub(lambda link: link[0].replace(link[1], self.address_of(page, link[1]), 1), drawing)
-            return drawing.replace("<svg ", f'<svg class="drawn" role="group" aria-label="{escape(words, quote=True)}" ', 1)
-        kind = os.path.splitext(path)[1]
-        return f'<img src="figures/{escape(name)}{kind}" alt="{escape(words, quote=True)}"{size_of(path)}>'
+            begin = f'<svg class="drawn" role="group" aria-label="{escape(words, quote=True)}" '
+            replace(place, self.hole(drawing.replace("<svg ", begin, 1)))
+        else:
+            replace(place, E.img({"src": f"figures/{name}{os.path.splitext(path)[1]}", "alt": words}, size_of(path)))
 
-    def address_of(self, page, label):
+    # ------------------------------------------------------------ links
+    def address_of(self, page: Page, label: str) -> str:
+        """Where a label is, seen from a page."""
         home, anchor, _ = self.links.labels[label]
         return ("" if home is page else home.file) + "#" + anchor
 
-    def resolve(self, page, html):
-        """Addresses of chunks and items, now that it is known on which page each stands."""
-        an_item = re.compile(r'<span class="ltx_text lit-item ([^"]*)"[^>]*>')
-        html = an_item.sub(r'<span class="lit-item" id="item-\1">', html)
+    def link_items(self, page: Page) -> None:
+        """The rows of the inventory are places, and items lead to them."""
+        for place in page.tree.xpath('.//span[starts-with(@class, "ltx_text lit-item ")]'):
+            item = place.get("class").split()[2]
+            place.attrib.clear()
+            place.set("class", "lit-item")
+            place.set("id", "item-" + item)
+        for link in page.tree.xpath('.//a[starts-with(@href, "item:")]'):
+            home = self.links.inventory
+            assert home
+            link.set("href", f"{'' if home is page else home.file}#item-{link.get('href').removeprefix('item:')}")
 
-        def item(match):
-            return f'href="{"" if self.links.inventory is page else self.links.inventory.file}#item-{match[1]}"'
-        html = re.sub(r'href="item:([^"]*)"', item, html)
-
-        def address(match):
+    def resolve(self, page: Page, html: str) -> str:
+        """Addresses of chunks, now that it is known on which page each is."""
+        def address(match: re.Match[str]) -> str:
             home, anchor = self.links.anchors[match[1]]
             return f'href="{"" if home == page.file else home}#{anchor}"'
         return re.sub(r'href="chunk:([^"]*)"', address, html)
 
 
-def size_of(path):
+def size_of(path: str) -> dict[str, str]:
     """Width and height of an SVG, so that the text does not jump when it arrives."""
     if not path.endswith(".svg"):
-        return ""
+        return {}
     with open(path, encoding="utf-8") as file:
         head = file.read(2000)
     box = re.search(r'viewBox="\s*[\d.]+\s+[\d.]+\s+([\d.]+)\s+([\d.]+)', head)
-    return f' width="{float(box[1]):.0f}" height="{float(box[2]):.0f}"' if box else ""
+    return {"width": f"{float(box[1]):.0f}", "height": f"{float(box[2]):.0f}"} if box else {}
+
+
+def opening(tree: Element) -> str:
+    """A paragraph with the first sentence of a chapter, without its links, citations and notes."""
+    paragraph = copy.deepcopy(next(iter(tree.xpath('.//p[@class="ltx_p"]')), E.p()))
+    for citation in paragraph.xpath(".//cite"):
+        set_text_before(citation, text_before(citation).rstrip())
+        citation.drop_tree()
+    etree.strip_tags(paragraph, "a")
+    html = inner(paragraph).split('<span class="ltx_note')[0].strip()
+    sentence = re.match(r".{30,}?[a-z0-9)”>][.?!](?=\s+[A-Z“(]|\s*$)", html, re.DOTALL)
+    return f"<p>{sentence[0]}</p>" if sentence and balanced(sentence[0]) else ""
+
+
+def balanced(html: str) -> bool:
+    """Whether what opens in a piece of HTML closes there."""
+    return all(len(re.findall(rf"<{tag}\b", html)) == html.count(f"</{tag}>") for tag in ("span", "em", "math", "code", "i", "b"))
 
 
 # ---------------------------------------------------------------- the book
 class HtmlBook(book.Book):
     """The book, laid out as pages of HTML."""
 
-    def __init__(self, options):
+    def __init__(self, options: argparse.Namespace) -> None:
         super().__init__(options)
         self.listings = listing.HtmlListing(self.chapters, self.names)
-        with open(os.path.join(options.book, "page.html"), encoding="utf-8") as file:
-            self.template = string.Template(file.read())
+        # the titles and bodies that the templates of the theme show are HTML already
+        self.templates = jinja2.Environment(loader=jinja2.FileSystemLoader(options.book), autoescape=False,
+                                            undefined=jinja2.StrictUndefined)
+        self.templates.globals.update(about=self.about["book"], parts=self.parts, front=self.front, back=self.back)
 
-    def to_label(self, page):
-        def address(label):
-            home, anchor, number = self.links.labels[label]
-            title = "" if home is page else home.source
-            return ("" if home is page else home.file) + "#" + anchor, number or "here", title
-        return address
+    def render(self, template: str, **values: Any) -> str:
+        """A template of the theme, filled in."""
+        return self.templates.get_template(template).render(values)
 
-    def to_entry(self, key):
-        entry = self.links.bibliography[key]
-        title = f"{references.family(entry)} {entry.get('year', '')}".strip()
-        return f"bibliography.html#{key}", str(self.links.numbers[key]), title
-
-    def convert(self):
+    def convert(self) -> None:
         """Prose to HTML: check what it refers to, then LaTeXML's two steps, both for many chapters at once."""
         self.links.check(self.pages())
         self.back.append(self.links.bibliography_page())
@@ -196,24 +363,42 @@ class HtmlBook(book.Book):
                 self.links.labels[label] = (page, anchor, number)
             finisher.render_chunks(page)  # there is time for it while LaTeXML works
         for page in pages:
-            page.addresses = latexml.resolve(page.root, self.to_label(page), self.to_entry)
-        for page, body in converter.to_html(pages):
-            finisher.finish(page, body)
+            page.addresses = latexml.resolve(page.root, functools.partial(self.to_label, page), self.to_entry)
+        for page in converter.to_html(pages):
+            finisher.finish(page)
         self.number_entries(self.back[-1])
+        for page in pages:
+            page.body = finisher.text(page)
         for part in self.parts:
-            part.page = self.part_page(part)
+            part.page.title = part.title
+            part.page.body = self.render("part.html", part=part, openings={page: opening(page.tree) for page in part.pages})
         self.add_indexes(finisher)
 
-    def number_entries(self, page):
-        """The bibliography's entries get their numbers, and links to the chapters that cite them."""
-        def entry(match):
-            key = match[1]
-            where = ", ".join(f'<a href="{cited.file}">{cited.title}</a>' for cited in self.links.cited[key])
-            return (f'<p id="{key}" class="entry"><span class="number">[{self.links.numbers[key]}]</span> '
-                    f'{match[2]} <span class="cited">Cited in {where}.</span></p>')
-        page.body = re.sub(r'<p id="([^"]*)" class="ltx_p lit-entry">(.*?)</p>', entry, page.body, flags=re.DOTALL)
+    def to_label(self, page: Page, label: str) -> latexml.Address:
+        """How a page leads to a label."""
+        home, anchor, number = self.links.labels[label]
+        return ("" if home is page else home.file) + "#" + anchor, number or "here", "" if home is page else home.source
 
-    def add_indexes(self, finisher):
+    def to_entry(self, key: str) -> latexml.Address:
+        """How a page leads to an entry of the bibliography."""
+        entry = self.links.bibliography[key]
+        return f"bibliography.html#{key}", str(self.links.numbers[key]), f"{entry.family} {entry.get('year')}".strip()
+
+    def number_entries(self, page: Page) -> None:
+        """The bibliography's entries get their numbers, and links to the chapters that cite them."""
+        for entry in page.tree.xpath('.//p[@class="ltx_p lit-entry"]'):
+            key = entry.get("id")
+            entry.set("class", "entry")
+            number = E.span({"class": "number"}, f"[{self.links.numbers[key]}]")
+            number.tail, entry.text = " " + (entry.text or ""), None
+            entry.insert(0, number)
+            cited = lxml.html.fragment_fromstring('<span class="cited">Cited in ' + ", ".join(
+                f'<a href="{home.file}">{home.title}</a>' for home in self.links.cited[key]) + ".</span>")
+            entry.append(cited)
+            set_text_before(cited, text_before(cited) + " ")
+
+    def add_indexes(self, finisher: Finisher) -> None:
+        """The two indexes, before the bibliography."""
         tables = (self.listings.chunk_index(), self.listings.identifier_index())
         for (name, title), table in zip(INDEXES.items(), tables):
             page = Page(name, "", "")
@@ -221,150 +406,105 @@ class HtmlBook(book.Book):
             page.body = finisher.resolve(page, f"<h1>{title}</h1>\n{table}")
             self.back.insert(-1, page)
 
-    @staticmethod
-    def part_page(part):
-        """What a part is about, and how each of its chapters begins."""
-        page = Page(part.folder, "", "")
-        page.title = part.title
-        chapters = "\n".join(f'<li value="{chapter.chapter}"><a href="{chapter.file}">{chapter.title}</a>'
-                             f'{opening(chapter.body)}</li>' for chapter in part.pages)
-        page.body = (f'<header class="part"><p class="kind">Part</p><h1>{part.title}</h1><p class="about">{part.about}</p></header>\n'
-                     f'<ol class="chapters">\n{chapters}\n</ol>')
-        return page
-
-    def reading_order(self):
+    def reading_order(self) -> list[Page]:
         """All pages as a reader turns them: a part begins with its own page."""
         parts = [page for part in self.parts for page in [part.page] + part.pages]
         return [self.title_page()] + self.front + parts + self.back
 
-    def search_page(self):
+    def search_page(self) -> Page:
+        """The page with the search."""
         page = Page("search", "", "")
-        page.title, page.body = "Search", finder.PAGE
+        page.title, page.body = "Search", self.render("search.html")
         return page
 
     # ------------------------------------------------------------ layout
-    def entry(self, page, current):
-        number = f'<span class="number">{page.chapter}</span> ' if page.chapter else ""
-        here = ' aria-current="page"' if page is current else ""
-        out = f'<li><a href="{page.file}"{here}>{number}{page.title}</a>'
-        if page is current and page.sections:
-            items = "".join(f'<li><a href="#{anchor}">{title}</a></li>' for anchor, title in page.sections)
-            out += f"<ol>{items}</ol>"
-        return out + "</li>"
-
-    def contents(self, current):
-        """The navigation beside each page: the part that is being read stands open."""
-        out = ['<ol>' + "".join(self.entry(page, current) for page in self.front) + "</ol>"]
-        for part in self.parts:
-            is_open = " open" if current is part.page or current in part.pages else ""
-            here = ' aria-current="page"' if current is part.page else ""
-            items = f'<li><a href="{part.page.file}"{here}>About this part</a></li>'
-            items += "".join(self.entry(page, current) for page in part.pages)
-            out.append(f"<details{is_open}><summary>{part.title}</summary><ol>{items}</ol></details>")
-        out.append('<ol>' + "".join(self.entry(page, current) for page in self.back) + "</ol>")
-        return "\n".join(out)
-
-    def layout(self, page, before, after):
-        def neighbour(other, kind):
-            return f'<a rel="{kind}" href="{other.file}">{other.title}</a>' if other else "<span></span>"
-
-        above = next((part.page for part in self.parts if page in part.pages), None)
-        up = "" if page.name == "index" else neighbour(above, "up") if above else '<a rel="up" href="index.html">Title page</a>'
-        turn = f"{neighbour(before, 'prev')} {up} {neighbour(after, 'next')}"
+    def layout(self, page: Page, before: Page | None, after: Page | None) -> str:
+        """A whole page, with the contents beside it."""
         title = " ".join(re.sub(r"<[^>]*>", "", page.title).split())
-        return self.template.substitute(
-            title=f"{title} - {self.about['book']['title']}" if page.name != "index" else title,
-            book=self.about["book"]["title"], name=page.name, contents=self.contents(page), body=page.body,
-            turn=turn)
+        if page.name != "index":
+            title += f" - {self.about['book']['title']}"
+        above = next((part.page for part in self.parts if page in part.pages), None)
+        return self.render("page.html", page=page, before=before, after=after, above=above, title=title) + "\n"
 
-    def title_page(self):
-        """The first page: what the book is, and the house it describes, the ground floor below."""
-        about, page = self.about["book"], Page("index", "", "")
-        page.title = about["title"]
-        floors = []
-        for part in reversed(self.parts):
-            chapters = "".join(f'<li><a href="{chapter.file}">{chapter.title}</a></li>' for chapter in part.pages)
-            floors.append(f'<section class="floor"><h2><a href="{part.page.file}">{part.title}</a></h2><p>{part.about}</p>'
-                          f'<ol start="{part.pages[0].chapter}">{chapters}</ol></section>')
+    def title_page(self) -> Page:
+        """The first page."""
+        page = Page("index", "", "")
+        page.title = self.about["book"]["title"]
         first = self.front[0] if self.front else self.parts[0].pages[0]
-        page.body = (f'<header class="title-page"><h1>{about["title"]}</h1><p class="subtitle">{about["subtitle"]}</p>'
-                     f'<p class="after">{about["after"]}</p>{self.title_picture()}'
-                     f'<p class="begin"><a href="{first.file}">{about["begin"]}</a></p></header>'
-                     f'<p class="map-says">{about["map"]}</p>\n<div class="map">\n' + "\n".join(floors) + "\n</div>")
+        page.body = self.render("title.html", first=first, picture=self.title_picture())
         return page
 
-    def title_picture(self):
+    def title_picture(self) -> dict[str, Any] | None:
         """One of the book's figures, if a chapter shows it; its caption leads there."""
-        about = self.about["book"]
-        name = about["picture"]
+        name = self.about["book"]["picture"]
         path = self.links.figures.get(name)
         home = next((page for page in self.pages() if f'src="figures/{name}.' in page.body), None)
         if not path or not home:
-            return ""
-        words = re.sub(r"<[^>]*>", "", about["caption"])
-        return (f'<figure><img src="figures/{name}{os.path.splitext(path)[1]}" alt="{escape(words, quote=True)}"{size_of(path)}>'
-                f'<figcaption>{about["caption"]} <a href="{home.file}">{home.title}</a></figcaption></figure>')
+            return None
+        return {"address": f"figures/{name}{os.path.splitext(path)[1]}", "size": size_of(path), "home": home}
 
-    def write(self):
+    # ------------------------------------------------------------ files
+    def write(self) -> None:
         """Writes what changed, and removes what no longer belongs to the book."""
-        out, wanted = self.options.out, set()
-
-        def put(name, content):
-            wanted.add(name)
-            path = os.path.join(out, name)
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            if os.path.exists(path):
-                with open(path, "rb") as old:
-                    if old.read() == content:
-                        return
-            with open(path, "wb") as new:
-                new.write(content)
-
-        def copy(name, path):
-            wanted.add(name)
-            there = os.path.join(out, name)
-            os.makedirs(os.path.dirname(there), exist_ok=True)
-            if not os.path.exists(there) or not filecmp.cmp(path, there):  # looks into files only if their times differ
-                shutil.copy2(path, there)
-
+        out = Folder(self.options.out)
         pages = self.reading_order()
-        for i, page in enumerate(pages):
-            before, after = (pages[i - 1] if i else None), (pages[i + 1] if i + 1 < len(pages) else None)
-            put(page.file, self.layout(page, before, after).encode())
+        for page, before, after in zip(pages, [None, *pages], [*pages[1:], None]):
+            out.put(page.file, self.layout(page, before, after))
         search = self.search_page()
-        put(search.file, self.layout(search, None, None).encode())
-        put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES],
-                                            self.listings.identifiers).encode())
-        copy("search.js", os.path.join(self.options.book, "search.js"))
-        copy("book.css", os.path.join(self.options.book, "book.css"))
+        out.put(search.file, self.layout(search, None, None))
+        out.put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES], self.listings.identifiers))
+        for name in ("search.js", "book.css"):
+            out.copy(name, os.path.join(self.options.book, name))
         for font in FONTS:
             if not os.path.exists(font):
                 raise Problem(font, 0, "not found; Debian's packages fonts-texgyre and fonts-texgyre-math bring it")
-            copy("fonts/" + os.path.basename(font), font)
+            out.copy("fonts/" + os.path.basename(font), font)
         for name, path in self.links.figures.items():
-            copy(f"figures/{name}{os.path.splitext(path)[1]}", path)
-        for folder, _, files in os.walk(out, topdown=False):
+            out.copy(f"figures/{name}{os.path.splitext(path)[1]}", path)
+        out.remove_others()
+
+
+class Folder:
+    """The folder of the book, whose files are written only if they changed."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+        self.wanted: set[str] = set()
+
+    def place(self, name: str) -> str:
+        """Where a file of the book is to be."""
+        self.wanted.add(name)
+        path = os.path.join(self.path, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        return path
+
+    def put(self, name: str, text: str) -> None:
+        """Writes a file."""
+        path = self.place(name)
+        if os.path.exists(path):
+            with open(path, "rb") as old:
+                if old.read() == text.encode():
+                    return
+        with open(path, "wb") as new:
+            new.write(text.encode())
+
+    def copy(self, name: str, path: str) -> None:
+        """Copies a file; looks into files only if their times differ."""
+        there = self.place(name)
+        if not os.path.exists(there) or not filecmp.cmp(path, there):
+            shutil.copy2(path, there)
+
+    def remove_others(self) -> None:
+        """Removes what was not put or copied."""
+        for folder, _, files in os.walk(self.path, topdown=False):
             for file in files:
-                if os.path.relpath(os.path.join(folder, file), out) not in wanted:
+                if os.path.relpath(os.path.join(folder, file), self.path) not in self.wanted:
                     os.remove(os.path.join(folder, file))
             if not os.listdir(folder):
                 os.rmdir(folder)
 
 
-def opening(body):
-    """A paragraph with the first sentence of a chapter, without its links, citations and notes."""
-    paragraph = re.search(r'<p class="ltx_p">(.*?)</p>', body, re.DOTALL)
-    html = re.sub(r"\s*<cite\b.*?</cite>|</?a\b[^>]*>", "", paragraph[1] if paragraph else "", flags=re.DOTALL)
-    sentence = re.match(r".{30,}?[a-z0-9)”>][.?!](?=\s+[A-Z“(]|\s*$)", html.split('<span class="ltx_note')[0].strip(), re.DOTALL)
-    return f"<p>{sentence[0]}</p>" if sentence and balanced(sentence[0]) else ""
-
-
-def balanced(html):
-    """Whether what opens in a piece of HTML closes there."""
-    return all(len(re.findall(rf"<{tag}\b", html)) == html.count(f"</{tag}>") for tag in ("span", "em", "math", "code", "i", "b"))
-
-
-def main(options):
+def main(options: argparse.Namespace) -> None:
     whole = HtmlBook(options)
     whole.gather()
     whole.convert()

@@ -21,12 +21,12 @@ PARTS = (("library", ["malus_library"]), ("programs", ["malus", "mathtester"]), 
 SLOWEST = 15
 
 
-def cpu_seconds():
+def cpu_seconds() -> float:
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
-def measured(command):
+def measured(command: list[str]) -> tuple[float, float]:
     """(CPU seconds, seconds) of a command; what it prints is shown only if it fails."""
     cpu, start = cpu_seconds(), time.monotonic()
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -36,9 +36,9 @@ def measured(command):
     return cpu_seconds() - cpu, time.monotonic() - start
 
 
-def slowest(log):
+def slowest(log: str) -> list[tuple[float, str]]:
     """[(seconds, file)] of the objects in a Ninja log, longest first; the last line of a file counts."""
-    seconds = {}
+    seconds: dict[str, float] = {}
     with open(log, encoding="utf-8") as lines:
         for line in lines:
             if not line.startswith("#"):
@@ -48,14 +48,14 @@ def slowest(log):
     return sorted(((value, output) for output, value in seconds.items()), reverse=True)[:SLOWEST]
 
 
-def main():
+def main() -> None:
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     build, jobs = sys.argv[1:]
     shutil.rmtree(build, ignore_errors=True)
     rows = [("configure", *measured(["cmake", "--preset", "release", "-B", build, "-G", "Ninja"]))]
     rows += [(name, *measured(["cmake", "--build", build, "-j", jobs, "--target", *targets])) for name, targets in PARTS]
-    rows.append(("all", *(sum(row[column] for row in rows) for column in (1, 2))))
+    rows.append(("all", sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)))
     print(f"{'part':12}{'CPU s':>8}{'clock s':>9}   (-j {jobs})")
     for name, cpu, clock in rows:
         print(f"{name:12}{cpu:8.0f}{clock:9.0f}")
