@@ -25,39 +25,41 @@ import json
 import math
 import pathlib
 import random
+from collections.abc import Callable
 from typing import Any
 
 TAU = 2 * math.pi
+Point = tuple[float, float, float]
 
 
 class Mesh:
     """Vertices and faces of one OBJ file, in the order in which they will be written."""
 
-    def __init__(self, about):
+    def __init__(self, about: str) -> None:
         self.lines = [f'# {about}', '# made by parking-lot.py; metres, x east, y north, z up']
         self.vertices = 0
         self.triangles = 0
 
-    def facet(self, name, material):
+    def facet(self, name: str, material: str) -> None:
         self.lines += [f'o {name}', f'usemtl {material}']
 
-    def vertex(self, x, y, z):
+    def vertex(self, x: float, y: float, z: float) -> int:
         """Returns the number by which faces name this vertex."""
         self.lines.append(f'v {x:.4f} {y:.4f} {z:.4f}')
         self.vertices += 1
         return self.vertices
 
-    def face(self, *corners):
+    def face(self, *corners: int) -> None:
         """Counter-clockwise seen from outside; corners that fall together are named once."""
         kept = [c for i, c in enumerate(corners) if c != corners[i - 1]]
         if len(kept) >= 3:
             self.lines.append('f ' + ' '.join(map(str, kept)))
             self.triangles += len(kept) - 2
 
-    def quad(self, a, b, c, d):
+    def quad(self, a: Point, b: Point, c: Point, d: Point) -> None:
         self.face(*(self.vertex(*p) for p in (a, b, c, d)))
 
-    def box(self, low, high, bottom=False):
+    def box(self, low: Point, high: Point, bottom: bool = False) -> None:
         (x0, y0, z0), (x1, y1, z1) = low, high
         v = [self.vertex(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)]
         for side in ((4, 5, 7, 6), (0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6)):
@@ -65,7 +67,7 @@ class Mesh:
         if bottom:
             self.face(v[0], v[2], v[3], v[1])
 
-    def rows(self, rows, closed=False, material=None):
+    def rows(self, rows: list[list[int]], closed: bool = False, material: Callable[[int, int], str] | None = None) -> None:
         """Faces between rows of vertex numbers; material(row, column), where given, switches usemtl as needed."""
         pending: dict[str | None, list[tuple[int, ...]]] = {}
         for j in range(len(rows) - 1):
@@ -80,7 +82,7 @@ class Mesh:
             for face in faces:
                 self.face(*face)
 
-    def save(self, path):
+    def save(self, path: pathlib.Path) -> None:
         path.write_text('\n'.join(self.lines) + '\n')
         print(f'{path}: {self.triangles} triangles')
 
@@ -91,20 +93,20 @@ ROWS = (-24.0, -7.0, 7.0, 24.0)             # y of the middle of each row of sta
 HALF = (40.0, 30.0)                         # half the lot, x and y
 
 
-def lot_height(x, y):
+def lot_height(x: float, y: float) -> float:
     """Drains to the edges, with shallow hollows where the asphalt has sunk."""
     hollows = ((-18, 0.5, 4), (9, -15, 3), (26, 15, 3.5), (-30, -16, 2.5))
     fall = -0.02 * (y / HALF[1]) ** 2
     return fall - sum(0.03 * math.exp(-((x - a) ** 2 + (y - b) ** 2) / r ** 2) for a, b, r in hollows)
 
 
-def is_line(x, y):
+def is_line(x: float, y: float) -> bool:
     """The painted lines: 12 cm wide between stalls, from end to end of a stall."""
     nearest = round(x / STALL) * STALL
     return abs(x - nearest) < 0.06 and abs(x) < 37.6 and any(abs(y - row) < DEPTH / 2 for row in ROWS)
 
 
-def lot(rng):
+def lot(rng: random.Random) -> Mesh:
     mesh = Mesh('asphalt with painted lines, a kerb, and four puddles')
     mesh.facet('asphalt', 'asphalt')
     # the columns of the grid bracket each painted line
@@ -130,11 +132,12 @@ def lot(rng):
 
 
 # ---------------------------------------------------------------- a car
-def power(value, exponent):
+def power(value: float, exponent: float) -> float:
     return math.copysign(abs(value) ** exponent, value)
 
 
-def superellipsoid(mesh, centre, half, e_up, e_round, columns, rows, floor, material):
+def superellipsoid(mesh: Mesh, centre: Point, half: Point, e_up: float, e_round: float, columns: int, rows: int, floor: float,
+                   material: Callable[[float, float], str]) -> None:
     """|z|^(2/e_up) with |x|,|y|^(2/e_round); cut off below `floor`, which makes it open there."""
     rings = []
     for j in range(rows + 1):
@@ -153,14 +156,14 @@ def superellipsoid(mesh, centre, half, e_up, e_round, columns, rows, floor, mate
     mesh.rows(numbers, closed=True, material=lambda j, i: material(i / columns, (heights[j] + heights[j + 1]) / 2))
 
 
-def car(_):
+def car(_: random.Random) -> Mesh:
     """4.4 m long along y, nose to the north, wheels on z = 0."""
     mesh = Mesh('a car: body, windows, bumpers, wheels')
     mesh.facet('body', 'body')
     superellipsoid(mesh, (0, 0, 0.62), (0.9, 2.2, 0.36), 0.45, 0.5, 112, 44, 0.3, lambda u, z: 'body')
     mesh.facet('cabin', 'body')
 
-    def pane(u, z):
+    def pane(u: float, z: float) -> str:
         pillar = min(abs(u * 4 - n) for n in (0.38, 1.62, 2.38, 3.62, 0.0, 2.0, 4.0)) < 0.05
         return 'glass' if 0.96 < z < 1.34 and not pillar else 'body'
     superellipsoid(mesh, (0, -0.25, 0.9), (0.8, 1.35, 0.55), 0.7, 0.6, 96, 40, 0.85, pane)
@@ -181,7 +184,7 @@ def car(_):
 
 
 # ---------------------------------------------------------------- building, pond, lawn, trees
-def building(rng):
+def building(rng: random.Random) -> Mesh:
     mesh = Mesh('a building with a glass front: panes, frames between them, concrete walls')
     x0, x1, y0, y1, top = -30.0, 30.0, 38.0, 50.0, 15.0
     mesh.facet('walls', 'concrete')
@@ -206,11 +209,11 @@ def building(rng):
     return mesh
 
 
-def pond(rng):
+def pond(rng: random.Random) -> Mesh:
     mesh = Mesh('a pond with small waves, and its rim')
     waves = [(rng.uniform(0.4, 2.5), rng.gauss(0.8, 0.5), rng.uniform(0, TAU)) for _ in range(24)]
 
-    def height(x, y):
+    def height(x: float, y: float) -> float:
         # each wave: its length, the direction it runs, and where it begins; steepness 0.02 each
         return -0.2 + sum(0.02 / (TAU / length) / 4 * math.sin(TAU / length * (x * math.cos(a) + y * math.sin(a)) + p)
                           for length, a, p in waves)
@@ -224,7 +227,7 @@ def pond(rng):
     return mesh
 
 
-def lawn(rng):
+def lawn(rng: random.Random) -> Mesh:
     mesh = Mesh('a lawn, blade by blade')
     mesh.facet('lawn', 'grass')
     for _ in range(110000):
@@ -236,7 +239,7 @@ def lawn(rng):
     return mesh
 
 
-def tree(rng):
+def tree(rng: random.Random) -> Mesh:
     """7 m high, standing on z = 0."""
     mesh = Mesh('a tree: trunk and leaves')
     mesh.facet('trunk', 'bark')
@@ -265,7 +268,7 @@ def tree(rng):
 LACQUERS = ('black-lacquer', 'white-lacquer', 'silver', 'red-paint')
 
 
-def scene(rng):
+def scene(rng: random.Random) -> dict[str, Any]:
     """The scene file. Which stalls are taken, and by which car, is drawn; so is how each driver parked."""
     cars: dict[str, list[dict[str, Any]]] = {name: [] for name in LACQUERS}
     count = 0
@@ -288,10 +291,10 @@ def scene(rng):
     geometry += [{'obj': folder + 'car.obj', 'materials': {'body': name}, 'instances': places} for name, places in cars.items() if places]
     geometry += [{'obj': folder + 'tree.obj', 'instances': trees}, {'ground': {'z_m': -0.3, 'material': 'soil', 'facet': 'ground'}}]
 
-    def colour(name):
+    def colour(name: str) -> Any:
         return {'model': 'lambertian', 'reflectance': {'file': f'data/{name}.csv', 'column': 'reflectance'}}
 
-    def surface(constants, sigma):
+    def surface(constants: str, sigma: float) -> dict[str, Any]:
         return {'model': 'torrance-sparrow', 'optical_constants': f'data/{constants}.yml', 'sigma': sigma, 'diffuse': 'none'}
 
     return {
@@ -313,9 +316,9 @@ def scene(rng):
         'radiometry': {'sampling': 'importance', 'rays': [8, 2, 1], 'seed': 1}}
 
 
-def readable(value):
+def readable(value: Any) -> str:
     """JSON with one line for each instance, material and other small thing."""
-    def dump(item, indent):
+    def dump(item: Any, indent: int) -> str:
         short = json.dumps(item)
         if len(short) + indent < 118 or not isinstance(item, (dict, list)):
             return short
@@ -327,7 +330,7 @@ def readable(value):
             + dump(value, 0) + '\n')
 
 
-def main():
+def main() -> None:
     here = pathlib.Path(__file__).resolve().parent
     options = argparse.ArgumentParser(description=(__doc__ or '').split('\n', maxsplit=1)[0])
     options.add_argument('--out', type=pathlib.Path, default=here / 'generated' / 'parking-lot', help='directory of the meshes')

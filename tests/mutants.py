@@ -28,7 +28,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from typing import Any
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FLOORS = ["light", "matter", "world", "imaging"]
@@ -45,7 +44,7 @@ SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "*=": "
 SKIPPED = re.compile(r"^\s*(#|//|template|using|typedef|friend|static_assert|throw|public:|private:|namespace|\}|$)|operator|reserve\(|alignas")
 
 
-def blank_literals(line, state):
+def blank_literals(line: str, state: bool) -> tuple[str, bool]:
     """The line with comments and literal texts blanked, and whether a block comment is still open."""
     out, i, block = [], 0, state
     while i < len(line):
@@ -72,7 +71,7 @@ def blank_literals(line, state):
     return "".join(out), block
 
 
-def changed_number(text):
+def changed_number(text: str) -> str:
     digits = text.rstrip("uUlLfz")
     suffix = text[len(digits):]
     plain = digits.replace("'", "")
@@ -85,25 +84,26 @@ def changed_number(text):
 class Fault:
     """One change of one token: where it is, in the tangled file and in its chapter."""
 
-    def __init__(self, chapter, path, index, column, old, new, place, text):
+    def __init__(self, chapter: str, path: pathlib.Path, index: int, column: int, old: str, new: str, place: str, text: str) -> None:
         self.chapter, self.path, self.index, self.column = chapter, path, index, column
         self.old, self.new, self.place, self.text = old, new, place, text.strip()
         self.outcome, self.seconds = "", 0.0
 
-    def mutated(self):
+    def mutated(self) -> str:
         lines = self.path.read_text().split("\n")
         line = lines[self.index]
         assert line[self.column:].startswith(self.old)
         lines[self.index] = line[:self.column] + self.new + line[self.column + len(self.old):]
         return "\n".join(lines)
 
-    def key(self):
+    def key(self) -> tuple[str, str, str]:
         return self.chapter, self.text, f"{self.old} -> {self.new}"
 
 
-def faults_of(chapter, path):
+def faults_of(chapter: str, path: pathlib.Path) -> list[Fault]:
     """All faults that can be planted in one tangled file; templates' and lists' angle brackets are left alone."""
-    found, place, number, block, raw = [], "", 0, False, False
+    found: list[Fault] = []
+    place, number, block, raw = "", 0, False, False
     for index, line in enumerate(path.read_text().split("\n")):
         if marker := LINE.match(line):
             place, number = marker[2], int(marker[1])
@@ -133,17 +133,20 @@ def faults_of(chapter, path):
     return found
 
 
+Part = tuple[str, int, list[Fault]]  # of the plan: a chapter, how many of its faults to try, and all of them
+
+
 class Build:
     """The compiler's and linker's own lines of a finished build."""
 
-    def __init__(self, directory):
+    def __init__(self, directory: str) -> None:
         self.directory = pathlib.Path(directory).resolve()
         commands = json.loads((self.directory / "compile_commands.json").read_text())
         self.compile = {str(pathlib.Path(c["file"]).resolve()): self.lean(shlex.split(c["command"])) for c in commands}
-        self.links = {}
+        self.links: dict[str, list[str]] = {}
 
     @staticmethod
-    def lean(words):
+    def lean(words: list[str]) -> list[str]:
         """The compiler's line without launcher, output and warnings as errors, at the optimisation that compiles fast,
         and with the checks of indices that make sanitize makes as well."""
         if words[0].endswith("ccache"):
@@ -155,7 +158,7 @@ class Build:
         return [w for w in words if w != "-Werror" and not w.startswith("-W")] + ["-O1", "-g0", "-w", "-D_GLIBCXX_ASSERTIONS"]
 
 
-def tests_of(chapters):
+def tests_of(chapters: list[str]) -> dict[str, list[pathlib.Path]]:
     """{chapter: tests whose first comment names it}"""
     tests: dict[str, list[pathlib.Path]] = {chapter: [] for chapter in chapters}
     for path in sorted((ROOT / "tests").glob("*_test.cpp")):
@@ -168,14 +171,15 @@ def tests_of(chapters):
     return tests
 
 
-def chapters_of():
+def chapters_of() -> list[str]:
     return [f"{floor}/{path.stem}" for floor in FLOORS for path in sorted((ROOT / "nw" / floor).glob("*.nw"))]
 
 
-def run_tests(build, fault_text, fault, tests, limits, scratch):
+def run_tests(build: Build, fault_text: str, fault: Fault, tests: list[pathlib.Path], limits: dict[pathlib.Path, float],
+              scratch: pathlib.Path) -> str:
     """'noticed', 'survived', or 'no C++' of one fault."""
-    scratch = pathlib.Path(scratch)
-    objects, include = [], []
+    objects: list[pathlib.Path] = []
+    include: list[str] = []
     if fault.path.suffix == ".hpp":  # a faulty header: the chapter's own source and its tests see it
         folder = scratch / "include" / fault.chapter.split("/")[0]
         folder.mkdir(parents=True)
@@ -216,7 +220,7 @@ def run_tests(build, fault_text, fault, tests, limits, scratch):
     return "survived"
 
 
-def linked(build, test, objects, out, replace):
+def linked(build: Build, test: str, objects: list[pathlib.Path], out: pathlib.Path, replace: bool) -> bool:
     """Link the test with these objects before the library; a recompiled test takes its own object's place."""
     if test not in build.links:
         listed = subprocess.run(["ninja", "-C", str(build.directory), "-t", "commands", test], capture_output=True, text=True, check=True)
@@ -231,7 +235,7 @@ def linked(build, test, objects, out, replace):
     return subprocess.run(words, cwd=build.directory, capture_output=True).returncode == 0
 
 
-def drawn(chapters, candidates, count, seed):
+def drawn(chapters: list[str], candidates: dict[str, list[Fault]], count: int, seed: int) -> list[Part]:
     """The faults to try, in proportion to the candidates of each chapter, at least one each; spares follow for faults that do not compile."""
     chance = random.Random(seed)
     total = sum(len(candidates[c]) for c in chapters)
@@ -244,7 +248,7 @@ def drawn(chapters, candidates, count, seed):
     return plan
 
 
-def excuses():
+def excuses() -> dict[tuple[str, str, str], str]:
     if not EXCUSED.exists():
         return {}
     with open(EXCUSED, encoding="utf-8") as file:
@@ -252,7 +256,7 @@ def excuses():
         return {(row["chapter"], row["line"], row["change"]): row["reason"] for row in rows}
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build")
     parser.add_argument("--count", type=int, default=400)
@@ -280,21 +284,22 @@ def main():
         if subprocess.run([str(build.directory / "tests" / test.stem), "--gtest_brief=1"], cwd=ROOT, capture_output=True).returncode:
             sys.exit(f"{test.stem} fails without any fault; build and repair it first")
         limits[test] = time.monotonic() - begin
-    excused, results = excuses(), []
+    excused = excuses()
+    results: list[Fault] = []
 
-    def try_chapter_fault(fault, ordered):
+    def try_chapter_fault(fault: Fault, ordered: list[pathlib.Path]) -> Fault:
         begin = time.monotonic()
         with tempfile.TemporaryDirectory(prefix="malus-mutant-") as scratch:
-            outcome = run_tests(build, fault.mutated(), fault, ordered, limits, scratch)
+            outcome = run_tests(build, fault.mutated(), fault, ordered, limits, pathlib.Path(scratch))
         if outcome == "survived" and fault.key() in excused:
             outcome = "excused"
         fault.outcome, fault.seconds = outcome, time.monotonic() - begin
         return fault
 
-    def try_chapter(part):
+    def try_chapter(part: Part) -> list[Fault]:
         chapter, wanted, pool = part
         ordered = sorted(tests[chapter], key=lambda test: limits[test])
-        done: list[Any] = []
+        done: list[Fault] = []
         for fault in pool:
             if sum(f.outcome in ("noticed", "survived") for f in done) == wanted:
                 break

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 import zlib
+from collections.abc import Callable
 
 program = os.path.abspath(sys.argv[1])
 seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 600
@@ -26,12 +27,12 @@ scenes = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))
 CUBES = ["s.0000.img", "s.0000.truth.img", "s.0001.img", "s.0001.truth.img"]
 
 
-def text_of(path):
+def text_of(path: str) -> str:
     with open(path, encoding="utf-8") as file:
         return file.read()
 
 
-def put(path, text):
+def put(path: str, text: str) -> None:
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
 
@@ -40,13 +41,13 @@ class Failure(Exception):
     pass
 
 
-def demand(good, what):
+def demand(good: object, what: str) -> None:
     if not good:
         raise Failure(what)
 
 
-def start(place, *flags, limit=None, streams=None):
-    def before():
+def start(place: str, *flags: str, limit: int | None = None, streams: int | None = None) -> "subprocess.Popen[str]":
+    def before() -> None:
         if limit is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
     out = streams or subprocess.PIPE
@@ -54,23 +55,23 @@ def start(place, *flags, limit=None, streams=None):
                             stdout=subprocess.PIPE, stderr=out, preexec_fn=before, text=True)
 
 
-def run(place, *flags, **how):
-    process = start(place, *flags, **how)
+def run(place: str, *flags: str, limit: int | None = None) -> tuple[int, str, str]:
+    process = start(place, *flags, limit=limit)
     out, err = process.communicate(timeout=300)
     return process.returncode, out, err or ""
 
 
-def refused(place, *flags, **how):
-    code, _, err = run(place, *flags, **how)
+def refused(place: str, *flags: str, limit: int | None = None) -> str:
+    code, _, err = run(place, *flags, limit=limit)
     demand(code == 2 and err.count("\n") == 1, f"{flags}: exit {code}, {err!r}")
     return err
 
 
-def cubes(directory):
+def cubes(directory: str) -> dict[str, bytes]:
     return {name: open(os.path.join(directory, name), "rb").read() for name in CUBES}
 
 
-def whole_files_only(place, directory):
+def whole_files_only(place: str, directory: str) -> None:
     """Whatever bears a true name is whole: a cube of the reference's bits, a record that can be read."""
     if not os.path.isdir(os.path.join(place, directory)):
         return
@@ -85,7 +86,7 @@ def whole_files_only(place, directory):
                 demand(f"{there:08x}" == checksum, f"{name} vouches for {cube} and is wrong")
 
 
-def finish(place, *flags):
+def finish(place: str, *flags: str) -> None:
     """Resumes to the end, and compares."""
     code, _, err = run(place, "--out", "b", "--resume", *flags)
     demand(code == 0, f"the resumed run ended with {code}: {err}")
@@ -94,7 +95,7 @@ def finish(place, *flags):
     demand(not rest, f"left behind: {rest}")
 
 
-def interrupt(place, number, *flags):
+def interrupt(place: str, number: int, *flags: str) -> None:
     process = start(place, "--out", "b", *flags, streams=subprocess.DEVNULL)
     time.sleep(dice.random() * 1.1 * duration)
     process.send_signal(number)
@@ -103,25 +104,25 @@ def interrupt(place, number, *flags):
     whole_files_only(place, "b")
 
 
-def kills(place):
+def kills(place: str) -> None:
     for _ in range(dice.randint(1, 4)):
         interrupt(place, signal.SIGKILL, "--resume", "--threads", str(dice.randint(1, 3)))
     finish(place)
 
 
-def stops(place):
+def stops(place: str) -> None:
     for _ in range(dice.randint(1, 3)):
         interrupt(place, dice.choice([signal.SIGINT, signal.SIGTERM]), "--resume")
     finish(place)
 
 
-def races(place):
+def races(place: str) -> None:
     """Many start at once into one directory; one of them works, and the others are refused."""
     many = [start(place, "--out", "b", *dice.choice(((), ("--resume",), ("--seed", "9"))), "--threads", "1")
             for _ in range(dice.randint(2, 5))]
     results = [p.communicate(timeout=300) + (p.returncode, p.args) for p in many]
     for _, err, code, args in results:
-        demand(code == 0 or (code == 2 and err.count("\n") == 1), f"{args}: exit {code}, {err!r}")
+        demand(code == 0 or (code == 2 and err.count("\n") == 1), f"{args!r}: exit {code}, {err!r}")
     demand(any(code == 0 for _, _, code, _ in results), "nobody worked")
     for frame in ("0000", "0001"):
         record = json.loads(text_of(os.path.join(place, "b", f"s.{frame}.run.json")))
@@ -132,7 +133,7 @@ def races(place):
                 demand(data == reference[cube], f"{cube} has other bits after a race")
 
 
-def frames_race(place):
+def frames_race(place: str) -> None:
     """Two frames by two programs at once are no race."""
     two = [start(place, "--out", "b", "--frames", frame, "--threads", "1") for frame in "01"]
     for process in two:
@@ -141,7 +142,7 @@ def frames_race(place):
     finish(place)
 
 
-def damage(place):
+def damage(place: str) -> None:
     run(place, "--out", "b")
     for name in dice.sample(CUBES, dice.randint(1, 3)):
         path = os.path.join(place, "b", name)
@@ -160,7 +161,7 @@ def damage(place):
     finish(place)
 
 
-def lose(place):
+def lose(place: str) -> None:
     """Kill, then damage what the resumed run reads first."""
     interrupt(place, signal.SIGKILL, "--resume")
     if os.path.isdir(os.path.join(place, "b")):
@@ -174,7 +175,7 @@ def lose(place):
     finish(place)
 
 
-def mend(place):
+def mend(place: str) -> None:
     """Another mesh between two halves is refused, or nothing of the first half was there."""
     interrupt(place, signal.SIGKILL)
     mesh = os.path.join(place, "bar.obj")
@@ -191,7 +192,7 @@ def mend(place):
     finish(place)
 
 
-def full(place):
+def full(place: str) -> None:
     """A limit on files, anywhere from nothing to all; with it the run is refused, and leaves no true name that is not whole."""
     largest = max(len(data) for data in reference.values())
     err = refused(place, "--out", "b", limit=dice.randrange(largest))
@@ -200,7 +201,7 @@ def full(place):
     finish(place)
 
 
-def disk(place):
+def disk(place: str) -> str | None:
     """A small disk in a file of memory, if the system lets us mount one in a namespace of our own."""
     size = dice.randrange(20, 200) * 4096
     fill = f"(sleep {dice.random() * duration:.3f}; cat /dev/zero >b/fill) 2>/dev/null & " if dice.random() < .5 else ""
@@ -219,14 +220,14 @@ def disk(place):
     return None
 
 
-def closed(place):
+def closed(place: str) -> None:
     streams = dice.choice(["2>&-", ">&-", ">&- 2>&-", "2>/dev/full", "</dev/null >/dev/full 2>&-", "<&- >&- 2>&-"])
     done = subprocess.run(f"'{program}' render s.json --out b {streams}", shell=True, cwd=place, capture_output=True)
     demand(done.returncode in (0, 2), f"{streams}: exit {done.returncode}")
     demand(cubes(os.path.join(place, "b")) == reference, f"other bits with {streams}")
 
 
-def parts(place):
+def parts(place: str) -> None:
     """Parts at once, one of them killed and resumed, then merged."""
     x = dice.randrange(1, 63)
     tiles = [f"0,0,{x},56", f"{x},0,64,56"]
@@ -254,7 +255,7 @@ def parts(place):
     finish(place)
 
 
-def make_scene(place):
+def make_scene(place: str) -> None:
     text = text_of(os.path.join(scenes, "chunky-bar-copper.json"))
     scene = json.loads(re.sub(r"^\s*//.*$", "", text, flags=re.M))
     shutil.copy(os.path.join(scenes, "chunky-bar.obj"), os.path.join(place, "bar.obj"))
@@ -265,7 +266,7 @@ def make_scene(place):
     put(os.path.join(place, "s.json"), json.dumps(scene))
 
 
-mishaps = [kills, stops, races, frames_race, damage, lose, mend, full, disk, closed, parts]
+mishaps: list[Callable[[str], str | None]] = [kills, stops, races, frames_race, damage, lose, mend, full, disk, closed, parts]
 begin = time.time()
 counts = {mishap.__name__: 0 for mishap in mishaps}
 with tempfile.TemporaryDirectory(prefix="malus-soak-") as home:
