@@ -353,40 +353,6 @@ class PrintedBook(Workshop):
         self.fails(r"\section{The code}", r"\section{The code} \sectoin", "nw/light/first.nw:6:", "Undefined control sequence")
 
 
-class Formulas(unittest.TestCase):
-    """formulas.pl must make of every formula what LaTeXML's own parser makes of it, which is slow."""
-
-    TEX = latexml.BEGIN + r"""\chapter{Formulas}
-$x$, $-\frac{1}{2}$, $a_{i}^{2}+b'$, $((a+b)(c-(d+e)))^{2}f$, $f(x,y)=\sin(x)\cos y$, $|r_s|^2+\|v\|$, $\bigl|a|b|c\bigr|$,
-$\Bigl[\;\cdot\;\Bigr]_{5.8}$, $\sum_{i=1}^{n} a_i \int_0^1 f(x)\,dx$, $a=b\le c, d\ne e,\qquad g$, $\langle a,b\rangle$, $\{x\,|\,x>0\}$,
-$\left.\frac{df}{dx}\right|_{x=0}$, ${}^{14}C$, $\max_{x} f\,/\,\log 2$, $\begin{pmatrix} 1 & x \\ (y) & [z] \end{pmatrix}$, $[0,1)$,
-$\begin{cases} a & b>0 \\ (c) & \text{else} \end{cases}$, $+$, $=$, $x=$, $(+)$, $x\to 0^{+}$, $\mathbf{M}\cdot\vec{S}$, $n!$, $a\,(b$,
-$(((a)))$, $x^{)}_{=}$, $a:b$.
-\begin{align} S_0 &= |E_x|^2 + |E_y|^2, & S_1 &= (I_0 - I_{90}) \\ &= 2(S_0). \end{align}
-\end{document}
-"""
-
-    def convert(self, before: str = "") -> tuple[str, list[str]]:
-        """(XML, what the parser could not parse)"""
-        with tempfile.TemporaryDirectory() as folder:
-            source, made, log = (os.path.join(folder, "formulas." + ending) for ending in ("tex", "xml", "log"))
-            with open(source, "w", encoding="utf-8") as file:
-                file.write(self.TEX)
-            subprocess.run(["perl", "-e", f'use FindBin; require "$FindBin::Bin/formulas.pl"; {before} do "./latexml.pl"; die $@ if $@',
-                            "xml", os.path.join(ROOT, "doc", "book"), "1"], cwd=WEAVER, input=f"{source}\t{made}\t{log}\n",
-                           text=True, check=True, timeout=60)
-            with open(made, encoding="utf-8") as xml, open(log, encoding="utf-8") as said:
-                return xml.read(), re.findall(r"^Warning:not_parsed.*", said.read(), re.MULTILINE)
-
-    def test_same_trees_and_same_complaints_as_the_slow_parser(self) -> None:
-        fast, slow = self.convert(), self.convert("no warnings; *Formula::take_over = sub { };")
-        self.assertEqual(fast, slow)
-        self.assertGreater(len(slow[1]), 0)
-
-    def test_negative_control(self) -> None:
-        self.assertNotEqual(self.convert(), self.convert("no warnings; *Formula::copy_of = sub { return undef; };"))
-
-
 class Errata(unittest.TestCase):
     """The table of errata: what the report has and what the chapter tells must be the same."""
 
