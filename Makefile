@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format lint dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -61,6 +61,11 @@ format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
 	@doc/weaver/format.py $(shell git ls-files '*.nw')
 	@clang-format -i $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
+
+format-check: ## whether the chapters' code and the tests are formatted so
+	@$(NEED) clang-format noweb python3
+	@doc/weaver/format.py --check $(shell git ls-files '*.nw')
+	@clang-format --dry-run -Werror $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
 
 lint: ## check types, names and style of the Python (weaver, tests, scenes)
 	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex
