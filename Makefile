@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist sanitize mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -76,10 +76,27 @@ lint: ## check types, names and style of the Python (weaver, tests, scenes)
 dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
 	@cmake --build $(BUILD) -j $(JOBS) --target dist
 
-sanitize: need-test ## all tests under the address and undefined-behaviour sanitizers
+# what clang++ needs besides for its sanitizers
+CLANG := clang libclang-rt-14-dev
+
+sanitize: need-test ## all tests but the book's under the address and undefined-behaviour sanitizers (by clang++)
+	@$(NEED) $(CLANG)
 	@cmake --preset sanitize $(GENERATOR) >/dev/null
-	@cmake --build build-sanitize -j $(JOBS)
-	@ctest --test-dir build-sanitize -LE book -j $(JOBS) --output-on-failure --progress
+	@began=$$(date +%s) && cmake --build build-sanitize -j $(JOBS) && \
+	ctest --test-dir build-sanitize -LE book -j $(JOBS) --output-on-failure --progress && \
+	tests/clean-run.sh "make sanitize" build-sanitize $$began
+
+sanitize-core: need-test ## the same for the tests that reach most code for their time (tests/core.txt)
+	@$(NEED) $(CLANG)
+	@cmake --preset sanitize-core $(GENERATOR) >/dev/null
+	@cmake --build build-sanitize-core -j $(JOBS)
+	@ctest --test-dir build-sanitize-core -j $(JOBS) --output-on-failure --progress
+
+tsan: need-test ## the tests that run in several threads (tests/threads.txt) under the thread sanitizer
+	@cmake --preset tsan $(GENERATOR) >/dev/null
+	@began=$$(date +%s) && cmake --build build-tsan -j $(JOBS) && \
+	ctest --test-dir build-tsan -j $(JOBS) --output-on-failure --progress && \
+	tests/clean-run.sh "make tsan" build-tsan $$began
 
 MUTANTS ?= 400
 mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters (MUTANTS=400), and count those that their tests notice
@@ -101,7 +118,7 @@ coverage: need-test ## which lines of nw/ the tests reach
 
 FUZZ_SECONDS ?= 600
 fuzz: need-program ## throw mutilated scenes, meshes, tables and measured files at the readers (FUZZ_SECONDS=600 in all)
-	@$(NEED) clang libclang-rt-14-dev
+	@$(NEED) $(CLANG)
 	@cmake --preset fuzz $(GENERATOR) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
