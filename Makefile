@@ -99,9 +99,9 @@ tsan: need-test ## the tests that run in several threads (tests/threads.txt) und
 	tests/clean-run.sh "make tsan" build-tsan $$began
 
 MUTANTS ?= 400
-mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters (MUTANTS=400), and count those that their tests notice
+mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters (MUTANTS=400; AGAIN=1: survivors only), and count those noticed
 	@cmake --build $(BUILD) -j $(JOBS) --target all
-	@tests/mutants.py $(BUILD) --count $(MUTANTS) --report $(BUILD)/mutants.csv
+	@tests/mutants.py $(BUILD) --count $(MUTANTS) --jobs $(JOBS) --report $(BUILD)/mutants.csv $(if $(AGAIN),--again)
 
 clang: need-test ## all tests as compiled by clang++
 	@$(NEED) clang

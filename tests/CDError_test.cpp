@@ -59,8 +59,83 @@ TEST(CDErrorIdentity, OffersTheNearestNameOnlyWhenItIsNear) {
   EXPECT_EQ(didYouMean("phong", known), "known are: torrance-sparrow, lambertian");
 }
 
+// A third of the letters and one more may be wrong: three of six, two of three, one of two, and no
+// more than that. Of two names that are equally near the first is offered, of others the nearer.
+TEST(CDErrorIdentity, ANearNameHasAThirdOfItsLettersAndOneMoreWrong) {
+  const std::vector<std::string> six{"abcdef"}, three{"abc"}, two{"ab"};
+  EXPECT_EQ(nearestName("abcxyz", six), "did you mean abcdef? ");
+  EXPECT_EQ(nearestName("abwxyz", six), "");
+  EXPECT_EQ(nearestName("axy", three), "did you mean abc? ");
+  EXPECT_EQ(nearestName("xyz", three), "");
+  EXPECT_EQ(nearestName("ax", two), "did you mean ab? ");
+  EXPECT_EQ(nearestName("xy", two), "");
+  const std::vector<std::string> several{"abcdxy", "abcdez", "abcdew", "abcdef"};
+  EXPECT_EQ(nearestName("abcdeq", several), "did you mean abcdez? ");
+  EXPECT_EQ(nearestName("abcdef", several), "did you mean abcdef? ");
+}
+
+// Insertions, deletions and exchanges count one each: kitten to sitting is three, and no name of
+// more letters than the limit of three reaches is near.
+TEST(CDErrorPublished, KittenIsThreeEditsFromSitting) {
+  const std::vector<std::string> sitting{"sitting"}, longer{"sittings"};
+  EXPECT_EQ(nearestName("kitten", sitting), "did you mean sitting? ");
+  EXPECT_EQ(nearestName("kitten", longer), "");
+  EXPECT_EQ(nearestName("itting", sitting), "did you mean sitting? ");
+  EXPECT_EQ(nearestName("sittingxyz", sitting), "did you mean sitting? ");
+  EXPECT_EQ(nearestName("xyzsitting", sitting), "did you mean sitting? ");
+  EXPECT_EQ(nearestName("sittingwxyz", sitting), "did you mean sitting? ") << "four of four";
+  EXPECT_EQ(nearestName("sittinguvwxyz", sitting), "") << "six letters too many, five may be";
+}
+
+// Names of up to two hundred bytes are compared, a list of up to a hundred is printed whole.
+TEST(CDErrorIdentity, TheSearchAndTheListHaveLimits) {
+  const std::string longest(200, 'n');
+  const std::vector<std::string> fits{longest}, exceeds{longest + "n"};
+  EXPECT_EQ(nearestName(longest, fits), "did you mean " + longest + "? ");
+  EXPECT_EQ(nearestName(longest, exceeds), "");
+  std::vector<std::string> names;
+  for (int i = 0; i < 100; ++i) names.push_back("name" + std::to_string(i));
+  EXPECT_TRUE(didYouMean("?", names).ends_with("name98, name99"));
+  names.push_back("name100");
+  EXPECT_TRUE(didYouMean("?", names).ends_with("name98, name99, ... (101 in all)"));
+}
+
+// A value of 200 bytes is whole, and a cut falls before a letter of several bytes and not in it.
+TEST(CDErrorIdentity, ALongTextIsCutBetweenLetters) {
+  const auto shown = [](const std::string& value) {
+    return std::string(CDInputError({"a", 0, "f"}, value, "is long", "cut it").what());
+  };
+  const std::string whole_value(200, 'v');
+  EXPECT_EQ(shown(whole_value), "a: f = " + whole_value + ": is long; cut it");
+  const std::string before(198, 'v');
+  EXPECT_EQ(shown(before + "\u20ac"), "a: f = " + before + "...: is long; cut it");
+  EXPECT_EQ(shown(before + "\u00e4x"), "a: f = " + before + "\u00e4...: is long; cut it");
+  const std::string part(2000, 'p');
+  EXPECT_EQ(std::string(CDInputError({}, "", part, part).what()), part + "; " + part);
+  EXPECT_EQ(std::string(CDInputError({}, "", part + "p", part).what()), part + "...; " + part);
+}
+
+// Control characters are all below 32, and 127; bytes that are no UTF-8 are written like them,
+// one by one, wherever they stand.
+TEST(CDErrorIdentity, ControlCharactersAndBrokenBytesAreSpelt) {
+  const auto shown = [](const std::string& problem) {
+    return std::string(CDInputError({}, "", problem, "").what());
+  };
+  EXPECT_EQ(shown("a\x1f \x7f~"), "a\\x1f \\x7f~; ");
+  EXPECT_EQ(shown("\xff\xfe"), "\\xff\\xfe; ");
+  EXPECT_EQ(shown("a\xff\u00e4\xfe\u00e4z"), "a\\xff\u00e4\\xfe\u00e4z; ");
+}
+
+TEST(CDErrorIdentity, ALetterInTheLineIsNamed) {
+  EXPECT_EQ(std::string(CDInputError({"s.json", 1, "", 1}, "", "p", "r").what()),
+            "s.json:1:1: p; r");
+  EXPECT_EQ(std::string(CDInputError({"s.json", 1, "", 0}, "", "p", "r").what()),
+            "s.json:1: p; r");
+}
+
 TEST(CDErrorInvariant, ChecksBothSidesAndRefusesNaN) {
   EXPECT_NO_THROW(checkInvariant("R + T = 1", 1.0, 1.0 + 1e-16, 1e-15));
+  EXPECT_NO_THROW(checkInvariant("at the tolerance", 1.0, 1.5, 0.5));
   EXPECT_THROW(checkInvariant("R + T = 1", 1.0, 1.1, 1e-15), CDInvariantError);
   EXPECT_THROW(checkInvariant("R + T = 1", std::numeric_limits<double>::quiet_NaN(), 1.0, 1e9),
                CDInvariantError);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -207,4 +208,113 @@ TEST(CDGeometryIdentity, MaterialsAreRenamedByNameOrAllTogether) {
   EXPECT_EQ(scene.facetNames().back(), "ground");
   EXPECT_EQ(scene.facetNames()[2], "b.box.top");
   EXPECT_EQ(scene.triangles()[3].a, 4u);
+}
+
+// Rodrigues by what defines it: the axis stays, what is perpendicular to it turns by the angle to the
+// left, and volumes stay. The axis need not be a unit vector.
+TEST(CDGeometryIdentity, ARotationTurnsAboutItsAxis) {
+  const CDVector axis{1, -2, 2}, across{2, 2, 1};  // 3 long, and perpendicular
+  for (const double angle : {0.3, 2.0, -1.1}) {
+    const CDTransform turn = CDTransform::rotate(axis, angle);
+    EXPECT_LT((turn.apply(axis) - axis).getLength(), rounding);
+    const CDVector turned = turn.apply(across);
+    EXPECT_NEAR(dot(turned, across), 9 * std::cos(angle), 9 * rounding);
+    EXPECT_NEAR(dot(cross(across, turned), axis), 27 * std::sin(angle), 27 * rounding);
+    EXPECT_NEAR(turn.determinant(), 1, rounding);
+  }
+  EXPECT_THROW(CDTransform::rotate({}, 1), CDMathError);
+}
+
+TEST(CDGeometryIdentity, AScaleIsOfAllAxes) {
+  const CDVector p = CDTransform::scale(3).apply({1, 2, -5});
+  EXPECT_EQ(p.x, 3);
+  EXPECT_EQ(p.y, 6);
+  EXPECT_EQ(p.z, -15);
+  EXPECT_EQ(CDTransform::scale(-2).determinant(), -8);
+  const CDTransform both =
+      CDTransform::translate({1, 1, 1}).after(CDTransform::translate({0, 4, -2}));
+  EXPECT_EQ(both.apply({}).y, 5);
+  EXPECT_EQ(both.apply({}).z, -1);
+}
+
+// A mirror image by any scale below zero, and a turned one that is none.
+TEST(CDGeometryInvariant, OnlyMirrorImagesExchangeCorners) {
+  const CDMesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(placed(mesh, CDTransform::scale(-1)).triangles()[0].b, 2u);
+  EXPECT_EQ(placed(mesh, CDTransform::rotate({1, 0, 0}, 3)).triangles()[0].b, 1u);
+}
+
+// The world ends at 1e9 m on each axis and side, and not before.
+TEST(CDGeometryIdentity, TheWorldEndsAtAThousandMillionMetres) {
+  const CDMesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const double far : {0.999999e9, -0.999999e9})
+    for (const CDVector& to : {CDVector{far, 0, 0}, CDVector{0, far, 0}, CDVector{0, 0, far}})
+      EXPECT_NO_THROW(placed(mesh, CDTransform::translate(to)));
+  for (const double far : {1e9, -1.000001e9})
+    for (const CDVector& to : {CDVector{far, 0, 0}, CDVector{0, far, 0}, CDVector{0, 0, far}})
+      EXPECT_THROW(placed(mesh, CDTransform::translate(to)), CDInputError);
+  EXPECT_EQ(complaint("v 0 0 0\nv 1e18 0 0\nv 0 -1e18 0\nf 1 2 3\n"), "none");
+}
+
+// A triangle as flat as 1e-12 of its longest side, whichever side that is and whatever the unit.
+TEST(CDGeometryIdentity, WithoutAreaMeansFlatAgainstTheLongestSide) {
+  const auto kept = [](double height, int first, double unit) {
+    CDMesh mesh;
+    mesh.facets = {"a"}, mesh.materials = {"b"};
+    const std::array<CDVector, 3> corner{CDVector{}, {1, 0, 0}, {0.5, height, 0}};
+    for (int i = 0; i < 3; ++i)
+      mesh.vertices.push_back(corner[std::size_t(first + i) % 3] * unit);
+    mesh.triangles = {{0, 1, 2, 0, 0}};
+    const CDSceneGeometry scene = placed(mesh, {});
+    EXPECT_EQ(scene.triangles().size() + scene.degenerateTriangles(), 1u);
+    return scene.triangles().size() == 1;
+  };
+  for (int first = 0; first < 3; ++first)
+    for (const double unit : {1.0, 1024.0, 1 / 1024.0}) {
+      EXPECT_TRUE(kept(1.005e-12, first, unit));
+      EXPECT_FALSE(kept(0.995e-12, first, unit));
+    }
+}
+
+TEST(CDGeometryIdentity, FacetsAndMaterialsWithoutANameHaveOne) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const CDMesh mesh =
+      parsed(corners + "f 1 2 3\ng side\nf 1 2 3\no box\nf 1 2 3\ng top\nf 1 2 3\n");
+  EXPECT_EQ(mesh.facets, (std::vector<std::string>{"mesh", "side", "box", "box.top"}));
+  EXPECT_EQ(mesh.materials, (std::vector<std::string>{"default"}));
+  EXPECT_NE(complaint(corners + "f 1 2 -4\n").find("-4: names no vertex; there are 3"),
+            std::string::npos);
+  EXPECT_NE(complaint(corners + "f 1 2 0\n").find("0"), std::string::npos);
+  EXPECT_NE(complaint(corners + "f 1 2 4\n").find("4: names no vertex"), std::string::npos);
+  EXPECT_EQ(parsed(corners + "f -3 -2 -1\n").triangles[0].a, 0u);
+}
+
+// Normals of corners count if they are more than a degree off, whatever their length; those of no
+// length or that are not there do not. The square is not a triangle, so that its normal is a sum.
+TEST(CDGeometryIdentity, NormalsMoreThanADegreeOffAreCounted) {
+  const auto ignored = [](double degrees, const std::string& corners) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return parsed(fmt::format("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvn 0 0 0\nvn {} 0 {}\n",
+                              3 * std::sin(angle), 3 * std::cos(angle)) +
+                  "f " + corners + "\n")
+        .ignored_normals;
+  };
+  EXPECT_EQ(ignored(1.005, "1//2 2//2 3//2 4//2"), 4u);
+  EXPECT_EQ(ignored(0.995, "1//2 2//2 3//2 4//2"), 0u);
+  EXPECT_EQ(ignored(180, "1//-1 2//1 3 4//9"), 1u)
+      << "one of none, one that is absent, one of no length";
+  EXPECT_EQ(ignored(180, "1//-2 2//-1 3//-3 4"), 1u);
+}
+
+// A corner that is a hair inside is one within rounding, and the first corner stays the tip.
+TEST(CDGeometryIdentity, AConvexPolygonIsCutFromItsFirstCorner) {
+  const CDMesh mesh = parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n");
+  ASSERT_EQ(mesh.triangles.size(), 3u);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(mesh.triangles[i].a, 0u);
+    EXPECT_EQ(mesh.triangles[i].b, i + 1);
+    EXPECT_EQ(mesh.triangles[i].c, i + 2);
+  }
+  // corners on one line with the first make triangles without area, which do not disagree
+  EXPECT_EQ(parsed("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3 4\n").triangles[0].a, 0u);
 }

@@ -201,6 +201,26 @@ TEST(CDRayTracerIdentity, AStartIsNearItsSurface) {
   EXPECT_FALSE(tracer.occluded(tracer.leave(hit), hit.normal));
 }
 
+// Far from the edges a start lies straight above its hit. On an edge it is moved towards the centroid
+// until it is two offsets from the edge: on the foot's middle that is straight up the face, and the
+// offset is 2^-16 of the two metres from the scene's middle.
+TEST(CDRayTracerIdentity, AStartMovesSidewaysNearEdgesAlone) {
+  const CDSceneGeometry scene = pyramids({}, true);
+  const CDRayTracer tracer(scene);
+  const auto sideways = [&](double x, double y) {
+    const CDHit hit = tracer.intersect({x, y, 5}, {0, 0, -1});
+    EXPECT_TRUE(hit);
+    const CDVector off = tracer.leave(hit) - hit.point;
+    return off - hit.normal * dot(off, hit.normal);
+  };
+  for (const double y : {-0.2, -0.75, -1.4})                // the foot is at -1.5, the tip at 0
+    EXPECT_LT(sideways(2, 2 + y).getLength(), 1e-14) << y;  // rounding of a point near 2
+  EXPECT_LT(sideways(3.9, 0.1).getLength(), 1e-14) << "the ground has no edges";
+  const CDVector moved = sideways(2, 2 - 1.5 + 1e-8);
+  EXPECT_GT(moved.y, 0);
+  EXPECT_NEAR(moved.getLength(), 2 * 0x1p-15, 1e-6 * 0x1p-15);  // 1e-8 m off the edge
+}
+
 // Rays from where all four faces of a pyramid are seen to its tip and its ridges meet the pyramid and not the ground behind.
 TEST(CDRayTracerInvariant, NothingLeaksAtCorners) {
   const CDSceneGeometry scene = pyramids({}, true);

@@ -49,6 +49,8 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   render(scratch.path, "--out good --tile 0,0,256,4");
   render(scratch.path, "--out good --tile 0,4,9,256");
   render(scratch.path, "--out good --tile 9,4,256,256");
+  render(scratch.path, "--out twice --tile 0,0,256,128");
+  render(scratch.path, "--out twice --tile 0,64,256,192");
   render(scratch.path, "--out other --seed 77 --tile 0,4,9,256");
   const std::string first = "chunky-bar-copper.0-0-256-4",
                     second = "chunky-bar-copper.0-4-9-256",
@@ -82,6 +84,12 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   // along the lower edge: the tile that is left is a rectangle without a seam
   says("1024 pixels: do not make 256 x 256",
        [&](const fs::path& in) { without(second)(in), without(third)(in); });
+  // as many pixels as the picture has, but the upper half of the second tile is there twice and as
+  // many rows at the lower edge are missing
+  says("65536 pixels: do not make 256 x 256", [&](const fs::path& in) {
+    without("chunky-bar-copper.")(in);
+    fs::copy(scratch / "twice", in, fs::copy_options::recursive);
+  });
   says("holds no tiles", without("chunky-bar-copper."));
   says("seed = 77", [&](const fs::path& in) {
     fs::copy(scratch / "other", in,
