@@ -168,6 +168,39 @@ TEST(BRDFSamplingInvariant, RandomDirectionsAreUniformOverTheSolidAngle) {
 }
 
 // Tolerances here: five standard errors of a mean over 100,000 points (false alarm 6e-7 each).
+// 20,000 points: the largest of them lies within a thousandth of the edge but for a chance of e^-20
+// (1 - 0.999^2 of them where the solid angle is uniform, a thousandth where the angle is), none beyond
+// it. The mean cosine of uniform solid angles is (1 + cos max) / 2 with the standard deviation
+// (1 - cos max) / sqrt(12); that of uniform angles sin(max) / max. Six standard errors.
+TEST(BRDFSamplingInvariant, RandomDirectionsFillTheConeToItsEdge) {
+  constexpr std::size_t count = 20000;
+  for (const double max : {0.05, 0.3, 1.0, pi / 2})
+    for (const auto draw : {CDZenithDraw::uniformAngle, CDZenithDraw::uniformSolidAngle}) {
+      CDRandom random(12);
+      double largest = 0, mean = 0, least_azimuth = 7, largest_azimuth = 0;
+      for (const CDSamplePoint& p :
+           randomSampling(count, max, random, CDSolidAngle::equal, draw)) {
+        largest = std::max(largest, p.zenith_rad);
+        mean += (1 - std::cos(p.zenith_rad)) / static_cast<double>(count);
+        least_azimuth = std::min(least_azimuth, p.azimuth_rad);
+        largest_azimuth = std::max(largest_azimuth, p.azimuth_rad);
+        EXPECT_GT(p.zenith_rad, 0);
+      }
+      EXPECT_GT(largest, 0.999 * max);
+      EXPECT_LE(largest, max * (1 + 1e-15));  // one rounding of the sine and its inverse
+      EXPECT_GE(least_azimuth, 0);
+      EXPECT_LT(least_azimuth, 2 * pi / 1000);
+      EXPECT_GT(largest_azimuth, 2 * pi * 0.999);
+      EXPECT_LT(largest_azimuth, 2 * pi);
+      const double whole = 1 - std::cos(max);  // 1 - cos, so that narrow cones count as well
+      const double expected =
+          draw == CDZenithDraw::uniformAngle ? 1 - std::sin(max) / max : whole / 2;
+      EXPECT_NEAR(mean, expected, 6 * whole / std::sqrt(9.0 * count))
+          << max;  // sd below whole / 3
+      EXPECT_LT(largest, 0.999 * (1.01 * max)) << "negative control: a cone one per cent wider";
+    }
+}
+
 TEST(BRDFSamplingIdentity, EqualSolidAnglesAreBiasedWhenZenithsAreUniformInAngle) {
   CDRandom random(6);
   const std::size_t n = 100000;

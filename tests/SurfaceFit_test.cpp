@@ -10,6 +10,7 @@
 #include "light/CDError.hpp"
 #include "matter/BRDFSampling.hpp"
 #include "matter/BRDFTorranceSparrow.hpp"
+#include "matter/DHRTorranceSparrow.hpp"
 #include "matter/Fresnel.hpp"
 
 using namespace malus;
@@ -65,6 +66,49 @@ TEST(SurfaceFitIdentity, SamplesWithoutNoiseGiveTheParametersBack) {
     EXPECT_NEAR(fit.values[3], 1, 2e-2);
     EXPECT_LT(fit.chi2, 0.01);
   }
+}
+
+// The diffuse term is d (1 - E(theta_r)) / pi in the corner of the matrix and nowhere else, and so
+// half of it in each polarisation. A sphere sees its integral, here summed by the midpoint rule, at
+// any angle of incidence. The facets come from the class without a diffuse term.
+TEST(SurfaceFitIdentity, TheDiffuseTermIsInTheCornerAlone) {
+  constexpr double sigma = 0.3, theta_i = 40 * degree, theta_r = 25 * degree, phi = 2.5;
+  CDTorranceSparrowOptions options;
+  options.diffuse = CDDiffuseTerm::none;
+  const BRDFTorranceSparrow facets(1.5, 0.2, sigma, options);
+  const CDMuellerMatrix f = facets.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi));
+  const DHRTorranceSparrow table;
+  const auto remainder = [&](double zenith) {
+    return table.getRemainder(zenith, sigma) / std::numbers::pi;
+  };
+  double sphere = 0;
+  constexpr int nodes = 2000;
+  for (int i = 0; i < nodes; ++i) {
+    const double zenith = (i + 0.5) / nodes * std::numbers::pi / 2;
+    sphere += remainder(zenith) * std::cos(zenith) * std::sin(zenith) * std::numbers::pi *
+              std::numbers::pi / nodes;
+  }
+  std::vector<CDFitSample> samples;
+  for (int element = 0; element < 16; ++element)
+    samples.push_back({CDFitQuantity::element, element, theta_i, theta_r, phi, 0, 1});
+  samples.push_back({CDFitQuantity::seenS, 0, theta_i, theta_r, phi, 0, 1});
+  samples.push_back({CDFitQuantity::seenP, 0, theta_i, theta_r, phi, 0, 1});
+  for (const double at : {0.0, theta_i, 1.2})
+    samples.push_back({CDFitQuantity::dhr, 0, at, 0, 0, 0, 1});
+  for (const double d : {0.0, 1.0, 2.5}) {
+    const Eigen::VectorXd y = predictSurface(samples, {1.5, 0.2, sigma, d});
+    const double own = d * remainder(theta_r);
+    for (int element = 0; element < 16; ++element)
+      EXPECT_NEAR(y[element], f.getMueller(element / 4, element % 4) + (element == 0 ? own : 0),
+                  1e-15)
+          << element;
+    EXPECT_NEAR(y[16], (f.getScalar() + own + f.getMueller(1, 0)) / 2, 1e-15);
+    EXPECT_NEAR(y[17], (f.getScalar() + own - f.getMueller(1, 0)) / 2, 1e-15);
+    Eigen::Index next = 18;
+    for (const double at : {0.0, theta_i, 1.2})  // 1e-4: the table's mean and its interpolation
+      EXPECT_NEAR(y[next++], facets.getDHR(at)[0] + d * sphere, 1e-4 * (1 + d)) << at;
+  }
+  EXPECT_GT(sphere, 0.05) << "negative control: the term is seen";
 }
 
 TEST(SurfaceFitIdentity, APolishedSampleGivesItsIndex) {
