@@ -107,7 +107,7 @@ def changed_number(text: str) -> str:
 # How tightly C++ binds; what stands between two operands with spaces on both sides, as clang-format writes it
 BINDING = {"*": 5, "/": 5, "%": 5, "+": 6, "-": 6, "<<": 7, ">>": 7, "<=>": 8, "<": 9, "<=": 9, ">": 9, ">=": 9, "==": 10, "!=": 10,
            "&": 11, "^": 12, "|": 13, "&&": 14, "||": 15}
-OPENERS = {")": "(", "]": "[", "}": "{"}
+CLOSERS = ")]}"
 KEYWORDS = {"return", "throw", "case", "else", "co_return", "do", "goto"}
 
 
@@ -115,7 +115,7 @@ def operand_before(blank: str, end: int) -> int | None:
     """Where the operand begins that ends at this place: brackets are whole, a space ends it."""
     i = end
     while i > 0 and not blank[i - 1].isspace() and blank[i - 1] not in "([{,;":
-        if (closer := blank[i - 1]) in OPENERS:
+        if blank[i - 1] in CLOSERS:
             depth = 0
             while i > 0:
                 i -= 1
