@@ -1,5 +1,5 @@
 // A BRDF as a sum of basis functions (nw/matter/BRDFBasis.nw).
-#include "matter/BRDFBasis.hpp"
+#include "malus/surface/BRDFBasis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 
 #include "ModelChecks.hpp"
 #include "Scratch.hpp"
-#include "light/CDError.hpp"
-#include "light/CDTable.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -23,25 +23,25 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 BRDFTorranceSparrow copper(double sigma = 0.3) {
-  return {0.405, 2.950, sigma, {CDShadowing::vGroove, CDDiffuseTerm::reciprocal}};
+  return {0.405, 2.950, sigma, {Shadowing::vGroove, DiffuseTerm::reciprocal}};
 }
 BRDFTorranceSparrow manyMetals() {
   const auto grid = manyBands();
   return {ramp(grid, 0.4, 1.2),
           ramp(grid, 3, 2),
           ramp(grid, 0.3, 0.3),
-          {CDShadowing::vGroove, CDDiffuseTerm::reciprocal}};
+          {Shadowing::vGroove, DiffuseTerm::reciprocal}};
 }
 
-CDBasisCoefficients readText(const Scratch& scratch, const std::string& text) {
+BasisCoefficients readText(const Scratch& scratch, const std::string& text) {
   put(scratch / "basis.csv", text);
   return readBasis(scratch / "basis.csv");
 }
 
 /// All sixteen parts with random coefficients, f00 well above them.
-CDBasisCoefficients randomCoefficients(int order, double width, const CDSpectralGridPtr& grid) {
-  CDRandom random(7);
-  CDBasisCoefficients c{CDBasisFunctions(order, width), grid, true, {}};
+BasisCoefficients randomCoefficients(int order, double width, const SpectralGridPtr& grid) {
+  Random random(7);
+  BasisCoefficients c{BasisFunctions(order, width), grid, true, {}};
   for (std::size_t p = 0; p < 16; ++p)
     for (std::size_t i = 0; i < c.functions.terms(basis_parts[p].kind).size() * grid->size();
          ++i)
@@ -54,7 +54,7 @@ CDBasisCoefficients randomCoefficients(int order, double width, const CDSpectral
 // Over the box of u, v and phi the functions times v^2 have unit squares and no overlap. Cosine and sine kinds apart:
 // a sine of zero times phi is nothing.
 TEST(BRDFBasisIdentity, TheFunctionsAreOrthonormal) {
-  const CDBasisFunctions functions(4, 0.3);
+  const BasisFunctions functions(4, 0.3);
   using Rule = boost::math::quadrature::gauss<double, 20>;
   std::vector<std::pair<double, double>> nodes;
   for (std::size_t i = 0; i < 10; ++i)
@@ -66,10 +66,10 @@ TEST(BRDFBasisIdentity, TheFunctionsAreOrthonormal) {
     for (const auto& [u, weight_u] : nodes)
       for (const auto& [v, weight_v] : nodes)
         for (int step = 0; step < 32; ++step) {
-          CDBasisFunctions::Values values;
+          BasisFunctions::Values values;
           functions.evaluate(
-              CDHalfDifference::fromAngles(std::atan(std::sqrt(0.3 * u / (1 - u))),
-                                           std::acos(v), 2 * pi * step / 32),
+              RusinkiewiczAngles::fromAngles(std::atan(std::sqrt(0.3 * u / (1 - u))),
+                                             std::acos(v), 2 * pi * step / 32),
               values);
           const double growth = std::pow(std::max(v, 0.02), 4);
           for (std::size_t i = 0; i < terms.size(); ++i)
@@ -87,9 +87,10 @@ TEST(BRDFBasisIdentity, TheFunctionsAreOrthonormal) {
 
 // sqrt(3) (2u - 1), sqrt(6) u cos 2phi and sqrt(8) u^(1/2) (3u - 2) cos phi, at v = 1.
 TEST(BRDFBasisPublished, ZernikePolynomials) {
-  const CDBasisFunctions functions(2, 0.25);
-  CDBasisFunctions::Values values;
-  functions.evaluate(CDHalfDifference::fromAngles(std::atan(std::sqrt(0.75)), 0, 0.4), values);
+  const BasisFunctions functions(2, 0.25);
+  BasisFunctions::Values values;
+  functions.evaluate(RusinkiewiczAngles::fromAngles(std::atan(std::sqrt(0.75)), 0, 0.4),
+                     values);
   const double u = 0.75;  // t = 0.75, w = 0.25
   const auto value = [&](int kind, int m, int a, int b) {
     const auto& terms = functions.terms(kind);
@@ -107,7 +108,7 @@ TEST(BRDFBasisPublished, ZernikePolynomials) {
 }
 
 TEST(BRDFBasisIdentity, LambertIsThreeTerms) {
-  const auto grid = CDSpectralGrid::make({550.0});
+  const auto grid = SpectralGrid::make({550.0});
   const BRDFDiffuse lambert(CDSpectralVector<double>(grid, 0.5), 0);
   const BRDFBasis sum(fitBasis(lambert, 2, 1));
   EXPECT_LT(compareModels(lambert, sum).error, 1e-6);  // the ridge of 1e-11 and the condition
@@ -117,13 +118,13 @@ TEST(BRDFBasisIdentity, LambertIsThreeTerms) {
 
 // What is in the span comes back.
 TEST(BRDFBasisInvariant, ASumFitsItself) {
-  const BRDFBasis truth(randomCoefficients(3, 0.2, CDSpectralGrid::make({500.0, 600.0})));
+  const BRDFBasis truth(randomCoefficients(3, 0.2, SpectralGrid::make({500.0, 600.0})));
   EXPECT_LT(compareModels(truth, BRDFBasis(fitBasis(truth, 3, 0.2))).error, 1e-5);
   EXPECT_GT(compareModels(truth, BRDFBasis(fitBasis(truth, 2, 0.2))).error, 1e-4);  // control
 }
 
 TEST(BRDFBasisInvariant, ReciprocalWhateverTheCoefficients) {
-  const BRDFBasis model(randomCoefficients(4, 0.2, CDSpectralGrid::make({500.0})));
+  const BRDFBasis model(randomCoefficients(4, 0.2, SpectralGrid::make({500.0})));
   const auto violation =
       [](const CDBRDFModel& sum) {  // where f00 is not small against the rest
         double worst = 0;
@@ -173,7 +174,7 @@ TEST(BRDFBasisIdentity, UnpolarisedStaysUnpolarised) {
   const BRDFDiffuse lambert(ramp(grid, 0.2, 0.7), 1);
   const BRDFBasis model(fitBasis(lambert, 2, 1));
   EXPECT_FALSE(model.coefficients().polarized);
-  EXPECT_FALSE(model.getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 170)).anyPolarized());
+  EXPECT_FALSE(model.getBRDF(BRDFGeometry::fromDegrees(30, 40, 170)).anyPolarized());
   expectScatterIsTheMatrix(model, 1e-13);
 }
 
@@ -186,36 +187,34 @@ TEST(BRDFBasisInvariant, TheSampler) {
 }
 
 TEST(BRDFBasisIdentity, BetweenWavelengths) {
-  const CDBasisCoefficients two =
-      randomCoefficients(2, 0.2, CDSpectralGrid::make({500.0, 600.0}));
-  const auto g = CDBRDFGeometry::fromDegrees(30, 50, 160);
+  const BasisCoefficients two = randomCoefficients(2, 0.2, SpectralGrid::make({500.0, 600.0}));
+  const auto g = BRDFGeometry::fromDegrees(30, 50, 160);
   const auto ends = BRDFBasis(two).getBRDF(g);
-  const auto middle = BRDFBasis(two.resampled(CDSpectralGrid::make({525.0}))).getBRDF(g);
+  const auto middle = BRDFBasis(two.resampled(SpectralGrid::make({525.0}))).getBRDF(g);
   for (int k = 0; k < 16; ++k)
     EXPECT_NEAR(middle.at(0).data()[k],
                 0.75 * ends.at(0).data()[k] + 0.25 * ends.at(1).data()[k], 1e-13);
-  EXPECT_THROW(two.resampled(CDSpectralGrid::make({601.0})), CDGridError);
+  EXPECT_THROW(two.resampled(SpectralGrid::make({601.0})), GridError);
 }
 
 TEST(BRDFBasisIdentity, TheFileGoesRound) {
   const Scratch scratch;
-  const CDBasisCoefficients c =
-      randomCoefficients(2, 0.2, CDSpectralGrid::make({500.0, 600.0}));
-  const CDBasisCoefficients back = readText(scratch, basisTable(c));
+  const BasisCoefficients c = randomCoefficients(2, 0.2, SpectralGrid::make({500.0, 600.0}));
+  const BasisCoefficients back = readText(scratch, basisTable(c));
   EXPECT_EQ(back.parts, c.parts);
   EXPECT_EQ(back.functions.width(), 0.2);
   EXPECT_EQ(back.functions.order(), 2);
   EXPECT_EQ(back.count(), c.count());
   const std::string whole = basisTable(c);
   EXPECT_THROW(readText(scratch, whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1)),
-               CDInputError);  // a row less
+               InputError);  // a row less
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string text = basisTable(c);
     const std::size_t at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
     // sealed again, or the checksum would notice before the reader does
     text = sealTable(text.replace(at, from.size(), to), "basis");
-    EXPECT_THROW(readText(scratch, text), CDInputError) << from << " -> " << to;
+    EXPECT_THROW(readText(scratch, text), InputError) << from << " -> " << to;
   };
   refused("order: 2", "order: 2.5");
   refused("order: 2", "order: 99");
@@ -229,13 +228,13 @@ TEST(BRDFBasisIdentity, TheFileGoesRound) {
 }
 
 TEST(BRDFBasisIdentity, ImpossibleSumsAreRefused) {
-  EXPECT_THROW(CDBasisFunctions(-1, 1), CDMathError);
-  EXPECT_THROW(CDBasisFunctions(13, 1), CDMathError);
+  EXPECT_THROW(BasisFunctions(-1, 1), MathError);
+  EXPECT_THROW(BasisFunctions(13, 1), MathError);
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()})
-    EXPECT_THROW(CDBasisFunctions(2, bad), CDMathError);
-  const auto grid = CDSpectralGrid::make({550.0});
-  EXPECT_THROW(BRDFBasis({CDBasisFunctions(2, 1), grid, false, {}}), CDMathError);
-  EXPECT_THROW(fitBasis(BRDFDiffuse(CDSpectralVector<double>(grid, 0.0), 0), 2), CDMathError);
-  EXPECT_THROW(fitBasis(copper(), 13), CDMathError);
+    EXPECT_THROW(BasisFunctions(2, bad), MathError);
+  const auto grid = SpectralGrid::make({550.0});
+  EXPECT_THROW(BRDFBasis({BasisFunctions(2, 1), grid, false, {}}), MathError);
+  EXPECT_THROW(fitBasis(BRDFDiffuse(CDSpectralVector<double>(grid, 0.0), 0), 2), MathError);
+  EXPECT_THROW(fitBasis(copper(), 13), MathError);
 }

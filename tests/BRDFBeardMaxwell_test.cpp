@@ -1,5 +1,5 @@
 // The measured surface (nw/matter/BRDFBeardMaxwell.nw) against its scan, plain sums and Torrance-Sparrow.
-#include "matter/BRDFBeardMaxwell.hpp"
+#include "malus/surface/BRDFBeardMaxwell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -17,13 +17,13 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double degree = pi / 180;
 
-CDBeardMaxwellParameters aluminium(std::size_t bands = 1, double rho_d = 0.02,
-                                   double rho_v = 0.01) {
+BeardMaxwellParameters aluminium(std::size_t bands = 1, double rho_d = 0.02,
+                                 double rho_v = 0.01) {
   std::vector<double> nm;
   for (std::size_t j = 0; j < bands; ++j) nm.push_back(500 + 50 * double(j));
-  const auto grid = CDSpectralGrid::make(nm);
-  CDBeardMaxwellParameters p{{grid, 1.3},  {grid, 7.5},   {grid, 0.02},
-                             {grid, 0.25}, {grid, rho_d}, {grid, rho_v}};
+  const auto grid = SpectralGrid::make(nm);
+  BeardMaxwellParameters p{{grid, 1.3},  {grid, 7.5},   {grid, 0.02},
+                           {grid, 0.25}, {grid, rho_d}, {grid, rho_v}};
   for (std::size_t j = 0; j < bands; ++j) {
     p.n[j] += 0.1 * double(j), p.bias[j] += 0.001 * double(j);
     if (j > 1) p.sigma[j] = 0.2;
@@ -31,13 +31,13 @@ CDBeardMaxwellParameters aluminium(std::size_t bands = 1, double rho_d = 0.02,
   return p;
 }
 
-CDBeardMaxwellParameters paint() {
+BeardMaxwellParameters paint() {
   auto p = aluminium();
   p.n[0] = 1.5, p.k[0] = 0, p.bias[0] = 0.01, p.sigma[0] = 0.2;
   return p;
 }
 
-double f00(const CDBRDFModel& model, const CDBRDFGeometry& g, std::size_t band = 0) {
+double f00(const CDBRDFModel& model, const BRDFGeometry& g, std::size_t band = 0) {
   return model.getBRDF(g).at(band).getScalar();
 }
 }  // namespace
@@ -46,10 +46,10 @@ double f00(const CDBRDFModel& model, const CDBRDFGeometry& g, std::size_t band =
 TEST(BRDFBeardMaxwellIdentity, TheScanComesBack) {
   auto p = aluminium(1, 0, 0);
   const BRDFBeardMaxwell model(p);
-  const CDCauchyFit scan{p.bias[0], p.sigma[0]};
+  const CauchyFit scan{p.bias[0], p.sigma[0]};
   for (double tilt = 0; tilt < 85; tilt += 5) {
     const double expected = scan(tilt * degree);
-    const double got = f00(model, CDBRDFGeometry::fromDegrees(tilt, tilt, 0));
+    const double got = f00(model, BRDFGeometry::fromDegrees(tilt, tilt, 0));
     EXPECT_NEAR(got / expected, 1, 1e-12) << tilt;  // rounding
     // as printed in 5.8, angles in degrees: far from one unless the tilt is zero
     const double printed = (1 + tilt) / (1 + tilt / 40);
@@ -71,7 +71,7 @@ TEST(BRDFBeardMaxwellPublished, ShadowingForMaxwellsParameters) {
 TEST(BRDFBeardMaxwellIdentity, ExampleByHand) {
   auto p = paint();
   const BRDFBeardMaxwell model(p);
-  const auto g = CDBRDFGeometry::fromDegrees(30, 30, 180);
+  const auto g = BRDFGeometry::fromDegrees(30, 30, 180);
   const double R30 =
       0.5 * (std::pow((std::cos(30 * degree) - std::sqrt(2.25 - 0.25)) /
                           (std::cos(30 * degree) + std::sqrt(2.25 - 0.25)),
@@ -87,13 +87,13 @@ TEST(BRDFBeardMaxwellIdentity, ExampleByHand) {
 // Both models send light by the same facets: their specular matrices are proportional.
 TEST(BRDFBeardMaxwellIdentity, MatricesAreProportionalToTorranceAndSparrows) {
   const auto p = aluminium(1, 0, 0);
-  CDTorranceSparrowOptions options;
-  options.diffuse = CDDiffuseTerm::none, options.shadowing = CDShadowing::none;
+  TorranceSparrowOptions options;
+  options.diffuse = DiffuseTerm::none, options.shadowing = Shadowing::none;
   const BRDFTorranceSparrow ts(1.3, 7.5, 0.4, options);
   const BRDFTorranceSparrow glass(1.5, 0, 0.4, options);
   const BRDFBeardMaxwell model(p);
   for (const double phi : {20.0, 120.0, 175.0}) {
-    const auto g = CDBRDFGeometry::fromDegrees(50, 35, phi);
+    const auto g = BRDFGeometry::fromDegrees(50, 35, phi);
     const CDMuellerMatrix a = model.getBRDF(g).at(0), b = ts.at(g), c = glass.at(g);
     const double ratio = a.getScalar() / b.getScalar();
     double worst = 0, control = 0;
@@ -111,7 +111,7 @@ TEST(BRDFBeardMaxwellIdentity, MatricesAreProportionalToTorranceAndSparrows) {
 
 TEST(BRDFBeardMaxwellIdentity, TheInnerLightDepolarises) {
   const BRDFBeardMaxwell all(aluminium()), surface(aluminium(1, 0, 0));
-  const auto g = CDBRDFGeometry::fromDegrees(50, 20, 70);
+  const auto g = BRDFGeometry::fromDegrees(50, 20, 70);
   const CDMuellerMatrix a = all.getBRDF(g).at(0), b = surface.getBRDF(g).at(0);
   EXPECT_NEAR(a.getScalar() - b.getScalar(),
               0.02 + 0.02 / (std::cos(50 * degree) + std::cos(20 * degree)), 1e-15);
@@ -124,11 +124,11 @@ TEST(BRDFBeardMaxwellIdentity, FunctionsOfTheVolumeEnterIt) {
   p.f = {{0, 90}, {1, 0}};            // falls to nothing at 90 degrees
   p.g = {{10, 20, 30}, {2, 1, 0.5}};  // constant beyond
   const BRDFBeardMaxwell model(p), surface(aluminium(1, 0, 0)), plain(aluminium(1, 0, 0.01));
-  const auto g = CDBRDFGeometry::fromDegrees(40, 40, 180);  // beta 40, tilt 0
+  const auto g = BRDFGeometry::fromDegrees(40, 40, 180);  // beta 40, tilt 0
   const double volume = 0.01 / std::cos(40 * degree);
   EXPECT_NEAR(f00(model, g) - f00(surface, g), volume * (50. / 90) * 2, 1e-14);
   EXPECT_NEAR(f00(plain, g) - f00(surface, g), volume, 1e-14);
-  const auto h = CDBRDFGeometry::fromDegrees(25, 25, 0);  // beta 0, tilt 25
+  const auto h = BRDFGeometry::fromDegrees(25, 25, 0);  // beta 0, tilt 25
   EXPECT_NEAR(f00(model, h) - f00(surface, h), 0.01 / std::cos(25 * degree) * 0.75, 1e-14);
 }
 
@@ -171,7 +171,7 @@ TEST(BRDFBeardMaxwellInvariant, MatricesAreRealizable) {
   for (const double ti : {0.0, 0.7, 1.4})
     for (const double tr : {0.1, 0.9, 1.5})
       for (const double phi : {0.0, 0.9, 2.5, pi}) {
-        const auto g = CDBRDFGeometry::fromAngles(ti, tr, phi);
+        const auto g = BRDFGeometry::fromAngles(ti, tr, phi);
         const auto f = metal.getBRDF(g);
         for (std::size_t j = 0; j < 4; ++j)
           EXPECT_TRUE(isRealizable(f.at(j), 1e-12 * (1 + f.at(j).getScalar())));
@@ -220,14 +220,14 @@ TEST(BRDFBeardMaxwellInvariant, SamplesFollowTheirDensity) {
 TEST(BRDFBeardMaxwellInvariant, SamplesGiveTheDHR) {
   const BRDFBeardMaxwell model(aluminium());
   const CDVector given = CDVector::fromAngles(0.6, 0.2);
-  CDRandom random(3);
+  Random random(3);
   double sum = 0, square = 0;
   constexpr int draws = 100000;
   for (int i = 0; i < draws; ++i) {
     const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
-    const CDBRDFSample s = model.sample(given, u1, u2, u3);
+    const BRDFSample s = model.sample(given, u1, u2, u3);
     if (s.rejected()) continue;
-    const double x = f00(model, CDBRDFGeometry::fromDirections(given, s.direction)) *
+    const double x = f00(model, BRDFGeometry::fromDirections(given, s.direction)) *
                      s.direction.z / s.density_per_sr;
     sum += x, square += x * x;
   }
@@ -238,15 +238,15 @@ TEST(BRDFBeardMaxwellInvariant, SamplesGiveTheDHR) {
 
 TEST(BRDFBeardMaxwellIdentity, AFitFindsWhatWasPutIn) {
   std::vector<double> tilt, scan;
-  const CDCauchyFit truth{0.013, 0.31};
+  const CauchyFit truth{0.013, 0.31};
   for (int i = 0; i < 40; ++i)
     tilt.push_back(2 * i * degree), scan.push_back(truth(tilt.back()));
-  const CDCauchyFit fit = fitScan(tilt, scan);
+  const CauchyFit fit = fitScan(tilt, scan);
   EXPECT_NEAR(fit.bias, truth.bias, 1e-6 * truth.bias);
   EXPECT_NEAR(fit.sigma, truth.sigma, 1e-6 * truth.sigma);
   for (double& value : scan) value += 0.01;  // not of the form any more
   EXPECT_GT(std::abs(fitScan(tilt, scan).sigma - truth.sigma), 1e-3);
-  EXPECT_THROW(fitScan({0.1, 0.2}, {1, 2}), CDMathError);
+  EXPECT_THROW(fitScan({0.1, 0.2}, {1, 2}), MathError);
 }
 
 TEST(BRDFBeardMaxwellInvariant, RefusesWhatCannotBe) {
@@ -256,19 +256,19 @@ TEST(BRDFBeardMaxwellInvariant, RefusesWhatCannotBe) {
     return p;
   };
   EXPECT_NO_THROW(BRDFBeardMaxwell(with([](auto&) {})));
-  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.sigma[1] = 0; })), CDMathError);
-  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.bias[1] = -1; })), CDMathError);
-  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.rho_v[0] = std::nan(""); })), CDMathError);
-  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.tau_deg = 0; })), CDMathError);
-  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.n[0] = 1, p.k[0] = 0; })), CDMathError);
+  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.sigma[1] = 0; })), MathError);
+  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.bias[1] = -1; })), MathError);
+  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.rho_v[0] = std::nan(""); })), MathError);
+  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.tau_deg = 0; })), MathError);
+  EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.n[0] = 1, p.k[0] = 0; })), MathError);
   EXPECT_THROW(BRDFBeardMaxwell(with([](auto& p) { p.rho_d = aluminium(3).rho_d; })),
-               CDGridError);
+               GridError);
 }
 
 TEST(BRDFBeardMaxwellInvariant, NoLightAtTheHorizon) {
   const BRDFBeardMaxwell model(aluminium());
-  auto g = CDBRDFGeometry::fromDegrees(90, 90, 180);
+  auto g = BRDFGeometry::fromDegrees(90, 90, 180);
   g.cos_i = g.cos_r = 0;
   EXPECT_EQ(f00(model, g), 0);
-  EXPECT_GT(f00(model, CDBRDFGeometry::fromDegrees(89, 89, 180)), 1);
+  EXPECT_GT(f00(model, BRDFGeometry::fromDegrees(89, 89, 180)), 1);
 }

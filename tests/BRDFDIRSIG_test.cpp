@@ -1,5 +1,5 @@
 // The lobe of the older DIRSIG (nw/matter/BRDFDIRSIG.nw) against sums over fine steps.
-#include "matter/BRDFDIRSIG.hpp"
+#include "malus/surface/BRDFDIRSIG.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,25 +8,25 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using namespace malus::testing;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-constexpr auto shapes = {CDLobeShape::cone, CDLobeShape::cosine, CDLobeShape::exponential};
+constexpr auto shapes = {LobeShape::cone, LobeShape::cosine, LobeShape::exponential};
 
-BRDFDIRSIG surface(double rho, double height, double width_deg, CDLobeShape shape) {
-  const auto grid = CDSpectralGrid::make({550.0});
+BRDFDIRSIG surface(double rho, double height, double width_deg, LobeShape shape) {
+  const auto grid = SpectralGrid::make({550.0});
   const auto of = [&](double x) { return CDSpectralVector<double>(grid, x); };
   return BRDFDIRSIG(of(rho), of(height), of(width_deg * degree), shape);
 }
 double f00(const BRDFDIRSIG& model, double theta_i, double theta_r, double phi) {
-  return model.getBRDF(CDBRDFGeometry::fromDegrees(theta_i, theta_r, phi)).at(0).getScalar();
+  return model.getBRDF(BRDFGeometry::fromDegrees(theta_i, theta_r, phi)).at(0).getScalar();
 }
 /// Bands of two widths and changing heights.
-BRDFDIRSIG varied(CDLobeShape shape, bool wide = true) {
+BRDFDIRSIG varied(LobeShape shape, bool wide = true) {
   const auto grid = manyBands();
   auto width = ramp(grid, 0.4, 0.4);
   if (wide)
@@ -42,15 +42,15 @@ TEST(BRDFDIRSIGIdentity, TheExampleOfTheChapter) {
     EXPECT_NEAR(f00(model, 40, 40, 180), 0.1 / pi + 2, 1e-14);
     EXPECT_NEAR(f00(model, 40, 50, 180), 0.1 / pi + 1, 1e-13);
     EXPECT_NEAR(f00(model, 40, 30, 180), 0.1 / pi + 1, 1e-13);
-    EXPECT_NEAR(f00(model, 40, 60, 180),
-                0.1 / pi + (shape == CDLobeShape::exponential ? 0.5 : 0), 1e-13);
+    EXPECT_NEAR(f00(model, 40, 60, 180), 0.1 / pi + (shape == LobeShape::exponential ? 0.5 : 0),
+                1e-13);
     EXPECT_GT(std::abs(f00(model, 40, 50.1, 180) - 0.1 / pi - 1), 1e-3);  // negative control
   }
 }
 
 // Out of the plane: the angle between vectors, by the arc cosine of their product.
 TEST(BRDFDIRSIGIdentity, TheAngleIsThatBetweenVectors) {
-  const BRDFDIRSIG model = surface(0, 0.2, 80, CDLobeShape::exponential);
+  const BRDFDIRSIG model = surface(0, 0.2, 80, LobeShape::exponential);
   for (const Angles& a : someAngles(50)) {
     const CDVector mirror = CDVector::fromAngles(a.theta_i, pi),
                    viewer = CDVector::fromAngles(a.theta_r, a.phi);
@@ -97,8 +97,8 @@ TEST(BRDFDIRSIGInvariant, EnergyIsDemanded) {
   for (const auto shape : shapes) {
     const double most = 0.9 / lobeAlbedo(shape, 20 * degree);
     EXPECT_NEAR(largestDHR(surface(0.1, most, 20, shape)), 1, 1e-9);
-    EXPECT_THROW(surface(0.1, 1.001 * most, 20, shape), CDMathError);
-    EXPECT_THROW(surface(0.101, most, 20, shape), CDMathError);
+    EXPECT_THROW(surface(0.1, 1.001 * most, 20, shape), MathError);
+    EXPECT_THROW(surface(0.101, most, 20, shape), MathError);
   }
 }
 
@@ -110,13 +110,13 @@ TEST(BRDFDIRSIGInvariant, ReciprocalRealizableAndFast) {
     expectScatterIsTheMatrix(model, 1e-14);  // three roundings
     expectNoAllocation(model);
     expectScoreAndHorizon(model);
-    EXPECT_FALSE(model.getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 180)).anyPolarized());
+    EXPECT_FALSE(model.getBRDF(BRDFGeometry::fromDegrees(30, 40, 180)).anyPolarized());
   }
 }
 
 TEST(BRDFDIRSIGInvariant, SamplesFollowTheirDensity) {
   for (const auto shape : shapes) expectSamplesFollowDensity(varied(shape));
-  EXPECT_LT(draw(varied(CDLobeShape::cone), varied(CDLobeShape::cone, false), 0.6).p_value,
+  EXPECT_LT(draw(varied(LobeShape::cone), varied(LobeShape::cone, false), 0.6).p_value,
             false_alarm);  // negative control: another width
 }
 
@@ -124,22 +124,21 @@ TEST(BRDFDIRSIGInvariant, TheSamplerGivesTheDHR) {
   for (const auto shape : shapes)
     EXPECT_LT(expectSamplerGivesDHR(surface(0.2, 2, 20, shape)), 0.01);
   // all light in a narrow peak: rings of equal share keep the noise low
-  EXPECT_LT(expectSamplerGivesDHR(surface(0, 1000, 1, CDLobeShape::exponential)), 0.01);
-  EXPECT_EQ(
-      surface(0, 0, 1, CDLobeShape::cone).sample({0, 0, 1}, 0.5, 0.5, 0.5).direction.z > 0,
-      true);  // black: still a direction
+  EXPECT_LT(expectSamplerGivesDHR(surface(0, 1000, 1, LobeShape::exponential)), 0.01);
+  EXPECT_EQ(surface(0, 0, 1, LobeShape::cone).sample({0, 0, 1}, 0.5, 0.5, 0.5).direction.z > 0,
+            true);  // black: still a direction
 }
 
 TEST(BRDFDIRSIGIdentity, ImpossibleSurfacesAreRefused) {
-  const auto cone = CDLobeShape::cone;
+  const auto cone = LobeShape::cone;
   for (const double bad : {-0.1, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(surface(bad, 0.1, 20, cone), CDMathError);
-    EXPECT_THROW(surface(0.1, bad, 20, cone), CDMathError);
-    EXPECT_THROW(surface(0.1, 0.1, bad, cone), CDMathError);
+    EXPECT_THROW(surface(bad, 0.1, 20, cone), MathError);
+    EXPECT_THROW(surface(0.1, bad, 20, cone), MathError);
+    EXPECT_THROW(surface(0.1, 0.1, bad, cone), MathError);
   }
-  EXPECT_THROW(surface(0.1, 0.1, 0, cone), CDMathError);
-  EXPECT_THROW(surface(0.1, 0.1, 91, cone), CDMathError);
-  EXPECT_THROW(surface(0.1, 0.1, 20, cone).getDHR(pi / 2), CDMathError);
-  EXPECT_THROW(surface(0.1, 0.1, 20, cone).sample({0, 0, -1}, 0.5, 0.5, 0.5), CDMathError);
+  EXPECT_THROW(surface(0.1, 0.1, 0, cone), MathError);
+  EXPECT_THROW(surface(0.1, 0.1, 91, cone), MathError);
+  EXPECT_THROW(surface(0.1, 0.1, 20, cone).getDHR(pi / 2), MathError);
+  EXPECT_THROW(surface(0.1, 0.1, 20, cone).sample({0, 0, -1}, 0.5, 0.5, 0.5), MathError);
 }

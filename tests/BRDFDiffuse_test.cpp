@@ -1,5 +1,5 @@
 // Lambert's surface in its three polarised forms (nw/matter/BRDFDiffuse.nw).
-#include "matter/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,16 +8,16 @@
 #include <limits>
 #include <numbers>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-const CDBRDFGeometry anywhere = CDBRDFGeometry::fromDegrees(20, 70, 33);
+const BRDFGeometry anywhere = BRDFGeometry::fromDegrees(20, 70, 33);
 
-const CDSpectralGridPtr& grid() {
-  static const CDSpectralGridPtr three = CDSpectralGrid::make({450.0, 550.0, 650.0});
+const SpectralGridPtr& grid() {
+  static const SpectralGridPtr three = SpectralGrid::make({450.0, 550.0, 650.0});
   return three;
 }
 CDSpectralVector<double> reflectance() {
@@ -86,8 +86,8 @@ RC_GTEST_PROP(BRDFDiffuseIdentity, FastScatteringEqualsTheMatrixTimesTheVector, 
 RC_GTEST_PROP(BRDFDiffuseInvariant, EveryMatrixIsRealizableAndReciprocal, ()) {
   const BRDFDiffuse model(reflectance(), fraction());
   const double i = fraction() * 1.5, r = fraction() * 1.5, phi = fraction() * 6;
-  const auto forth = model.getBRDF(CDBRDFGeometry::fromAngles(i, r, phi));
-  const auto back = model.getBRDF(CDBRDFGeometry::fromAngles(r, i, -phi));
+  const auto forth = model.getBRDF(BRDFGeometry::fromAngles(i, r, phi));
+  const auto back = model.getBRDF(BRDFGeometry::fromAngles(r, i, -phi));
   RC_ASSERT(forth == back);  // diagonal: the signs of the reciprocity drop out
   for (std::size_t band = 0; band < 3; ++band)
     RC_ASSERT(isRealizable(forth.at(band), 1e-15));  // rounding of eigenvalues
@@ -102,13 +102,13 @@ TEST(BRDFDiffuseInvariant, DHRIsTheReflectanceAndAgreesWithThePlainIntegration) 
       EXPECT_NEAR(plain[band], dhr[band], 1e-13);  // exact rule, 7680 terms
     }
   }
-  EXPECT_THROW(model.getDHR(pi / 2), CDMathError);
+  EXPECT_THROW(model.getDHR(pi / 2), MathError);
 }
 
 TEST(BRDFDiffuseIdentity, ScoreIsThatOfTheBaseClassAndNothingComesFromBelow) {
   const BRDFDiffuse model(reflectance(), 0.3);
   EXPECT_NEAR(model.getScore(anywhere), model.CDBRDFModel::getScore(anywhere), 1e-16);
-  const auto below = CDBRDFGeometry::fromDegrees(20, 91, 0);
+  const auto below = BRDFGeometry::fromDegrees(20, 91, 0);
   EXPECT_EQ(model.getScore(below), 0);
   EXPECT_EQ(model.getBRDF(below).at(2).getScalar(), 0);
   CDSpectralVector<CDStokesVector> in(grid(), CDStokesVector(1)), out(grid());
@@ -118,7 +118,7 @@ TEST(BRDFDiffuseIdentity, ScoreIsThatOfTheBaseClassAndNothingComesFromBelow) {
 
 TEST(BRDFDiffuseIdentity, ImpossibleSurfacesAreRefused) {
   for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(BRDFDiffuse(CDSpectralVector<double>(grid(), bad)), CDMathError);
-    EXPECT_THROW(BRDFDiffuse(reflectance(), bad), CDMathError);
+    EXPECT_THROW(BRDFDiffuse(CDSpectralVector<double>(grid(), bad)), MathError);
+    EXPECT_THROW(BRDFDiffuse(reflectance(), bad), MathError);
   }
 }

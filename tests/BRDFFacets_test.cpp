@@ -1,12 +1,12 @@
 // Facets with a weight for each band (nw/matter/BRDFFacets.nw) against Torrance and Sparrow's class.
-#include "matter/BRDFFacets.hpp"
+#include "malus/surface/BRDFFacets.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -20,12 +20,12 @@ class Twin : public BRDFFacets {
   std::string_view name() const override { return "twin"; }
 
  protected:
-  void weigh(const CDBRDFGeometry& g, const CDFacetGeometry& facet, std::size_t first,
+  void weigh(const BRDFGeometry& g, const FacetGeometry& facet, std::size_t first,
              std::size_t count, double* facets, double* diffuse) const override {
     EXPECT_LE(first + count, bands());
     for (std::size_t j = 0; j < count; ++j) {
       const double grow = 1 + slope_ * static_cast<double>(first + j);
-      facets[j] = grow * facetFactor(CDShadowing::vGroove, g, facet, sigma_);
+      facets[j] = grow * facetFactor(Shadowing::vGroove, g, facet, sigma_);
       diffuse[j] = 0.01 * g.cos_r * grow;
     }
   }
@@ -35,21 +35,21 @@ class Twin : public BRDFFacets {
 };
 
 struct Spectra {
-  CDSpectralGridPtr grid;
+  SpectralGridPtr grid;
   CDSpectralVector<double> n, k, sigma;
 };
 
 Spectra spectra(std::size_t bands) {
   std::vector<double> nm(bands);
   std::iota(nm.begin(), nm.end(), 400.0);
-  const auto grid = CDSpectralGrid::make(nm);
+  const auto grid = SpectralGrid::make(nm);
   Spectra s{grid, {grid, 1.0}, {grid, 1.0}, {grid, 0.2}};
   for (std::size_t j = 0; j < bands; ++j)
     s.n[j] = 0.3 + 0.01 * double(j), s.k[j] = 1 + double(j % 7);
   return s;
 }
 
-CDSpectralVector<CDStokesVector> lightOf(const CDSpectralGridPtr& grid, bool polarized) {
+CDSpectralVector<CDStokesVector> lightOf(const SpectralGridPtr& grid, bool polarized) {
   CDSpectralVector<CDStokesVector> light(grid);
   for (std::size_t j = 0; j < light.size(); ++j) {
     const double s0 = 1 + 0.1 * double(j % 5);
@@ -70,9 +70,9 @@ double largestDifference(const CDSpectralVector<CDStokesVector>& a,
   return largest;
 }
 
-CDTorranceSparrowOptions specular() {
-  CDTorranceSparrowOptions options;
-  options.diffuse = CDDiffuseTerm::none;
+TorranceSparrowOptions specular() {
+  TorranceSparrowOptions options;
+  options.diffuse = DiffuseTerm::none;
   return options;
 }
 }  // namespace
@@ -83,7 +83,7 @@ TEST(BRDFFacetsIdentity, AgreesWithTorranceSparrow) {
     const BRDFTorranceSparrow model(s.n, s.k, s.sigma, specular());
     const Twin twin(s.n, s.k, 0.2), other(s.n, s.k, 0.2, 1e-3);
     for (const double phi : {0.0, 100.0, 180.0}) {
-      const auto g = CDBRDFGeometry::fromDegrees(35, 50, phi);
+      const auto g = BRDFGeometry::fromDegrees(35, 50, phi);
       const auto f = twin.getBRDF(g), expected = model.getBRDF(g);
       for (std::size_t j = 0; j < bands; ++j)
         for (int e = 0; e < 16; ++e) {
@@ -106,12 +106,12 @@ TEST(BRDFFacetsIdentity, TheLightIsTheMatrixTimesTheLight) {
       const Spectra s = spectra(bands);
       const Twin twin(s.n, s.k, 0.3, 0.01);
       const auto in = lightOf(s.grid, polarized);
-      const auto g = CDBRDFGeometry::fromDegrees(20, 60, 140);
+      const auto g = BRDFGeometry::fromDegrees(20, 60, 140);
       CDSpectralVector<CDStokesVector> fast(s.grid), plain(s.grid), wrong(s.grid);
       twin.scatter(g, 0.7, in, fast);
       twin.scatter(g, 0.1, in, fast);  // adds
       twin.CDBRDFModel::scatter(g, 0.8, in, plain);
-      twin.CDBRDFModel::scatter(CDBRDFGeometry::fromDegrees(20, 60, -140), 0.8, in, wrong);
+      twin.CDBRDFModel::scatter(BRDFGeometry::fromDegrees(20, 60, -140), 0.8, in, wrong);
       EXPECT_LT(largestDifference(fast, plain), 1e-13);  // rounding of sums of numbers near one
       EXPECT_GT(largestDifference(wrong, plain),
                 1e-4);  // the other side of the plane of incidence
@@ -121,7 +121,7 @@ TEST(BRDFFacetsIdentity, TheLightIsTheMatrixTimesTheLight) {
 TEST(BRDFFacetsInvariant, NothingBelowTheHorizon) {
   const Spectra s = spectra(3);
   const Twin twin(s.n, s.k, 0.3);
-  auto g = CDBRDFGeometry::fromDegrees(20, 60, 140);
+  auto g = BRDFGeometry::fromDegrees(20, 60, 140);
   g.cos_r = -g.cos_r;
   EXPECT_EQ(twin.getScore(g), 0);
   EXPECT_EQ(twin.getBRDF(g).at(1).getMueller(0, 0), 0);
@@ -135,10 +135,10 @@ TEST(BRDFFacetsInvariant, NothingBelowTheHorizon) {
 TEST(BRDFFacetsInvariant, RefusesWhatIsNoIndex) {
   Spectra s = spectra(2);
   s.k[1] = -1;
-  EXPECT_THROW(Twin(s.n, s.k, 0.3), CDMathError);
+  EXPECT_THROW(Twin(s.n, s.k, 0.3), MathError);
   s.k[1] = std::nan("");
-  EXPECT_THROW(Twin(s.n, s.k, 0.3), CDMathError);
+  EXPECT_THROW(Twin(s.n, s.k, 0.3), MathError);
   const Spectra other = spectra(3);
-  EXPECT_THROW(Twin(other.n, spectra(2).k, 0.3), CDGridError);
+  EXPECT_THROW(Twin(other.n, spectra(2).k, 0.3), GridError);
   EXPECT_NO_THROW(Twin(other.n, other.k, 0.3));
 }

@@ -5,24 +5,21 @@
 #include <numbers>
 #include <vector>
 
-#include "light/CDError.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-constexpr CDTorranceSparrowOptions with(CDShadowing shadowing, CDDiffuseTerm diffuse,
-                                        bool polarized = true) {
+constexpr TorranceSparrowOptions with(Shadowing shadowing, DiffuseTerm diffuse,
+                                      bool polarized = true) {
   return {shadowing, diffuse, polarized};
 }
-constexpr CDTorranceSparrowOptions specular_only =
-    with(CDShadowing::vGroove, CDDiffuseTerm::none);
-constexpr CDTorranceSparrowOptions as_thesis =
-    with(CDShadowing::vGroove, CDDiffuseTerm::thesis);
-constexpr CDTorranceSparrowOptions reciprocal =
-    with(CDShadowing::vGroove, CDDiffuseTerm::reciprocal);
+constexpr TorranceSparrowOptions specular_only = with(Shadowing::vGroove, DiffuseTerm::none);
+constexpr TorranceSparrowOptions as_thesis = with(Shadowing::vGroove, DiffuseTerm::thesis);
+constexpr TorranceSparrowOptions reciprocal = with(Shadowing::vGroove, DiffuseTerm::reciprocal);
 }  // namespace
 
 // ---- many directions at once, in single precision, against the plain sum in double precision
@@ -30,7 +27,7 @@ namespace {
 struct Directions {
   std::vector<float> x, y, z, weight;
   explicit Directions(std::size_t count, std::uint64_t seed = 1) {
-    CDRandom random(seed);
+    Random random(seed);
     for (std::size_t i = 0; i < count; ++i) {
       const CDVector d =
           CDVector::fromAngles(0.5 * pi * random.uniform(), 2 * pi * random.uniform());
@@ -38,13 +35,13 @@ struct Directions {
       weight.push_back(float(d.z * 2 * pi / double(count)));
     }
   }
-  CDLightDirections view() const {
+  LightDirections view() const {
     return {x.size(), x.data(), y.data(), z.data(), weight.data()};
   }
 };
 
 /// Copper and glass, smooth and rough, in runs of equal roughness.
-BRDFTorranceSparrow mixture(std::size_t bands, const CDTorranceSparrowOptions& options) {
+BRDFTorranceSparrow mixture(std::size_t bands, const TorranceSparrowOptions& options) {
   std::vector<double> nm, n, k, sigma;
   for (std::size_t j = 0; j < bands; ++j) {
     nm.push_back(400 + double(j));
@@ -53,12 +50,12 @@ BRDFTorranceSparrow mixture(std::size_t bands, const CDTorranceSparrowOptions& o
         k.push_back(glass ? 0 : 2.9 + 0.01 * double(j));
     sigma.push_back(j < bands / 2 ? 0.1 : 0.3);
   }
-  const auto grid = CDSpectralGrid::make(nm);
+  const auto grid = SpectralGrid::make(nm);
   return {CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k),
           CDSpectralVector<double>(grid, sigma), options};
 }
 
-CDSpectralVector<CDStokesVector> whiteLight(const CDSpectralGridPtr& grid) {
+CDSpectralVector<CDStokesVector> whiteLight(const SpectralGridPtr& grid) {
   CDSpectralVector<CDStokesVector> light(grid);
   for (std::size_t j = 0; j < light.size(); ++j)
     light[j] = CDStokesVector(1 + 0.01 * double(j));
@@ -83,8 +80,8 @@ double apart(const CDSpectralVector<CDStokesVector>& a,
 // 3e-6: single precision's 6e-8 through an exponent of up to some tens.
 TEST(GatherIdentity, GatherIsTheSumOfScatter) {
   for (const auto& options :
-       {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
-        with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+       {specular_only, as_thesis, reciprocal, with(Shadowing::smith, DiffuseTerm::thesis),
+        with(Shadowing::vGroove, DiffuseTerm::thesis, false)})
     for (const std::size_t bands : {1u, 2u, 11u, 300u})
       for (const std::size_t count : {90u, 128u, 333u}) {
         const BRDFTorranceSparrow model = mixture(bands, options);
@@ -134,12 +131,12 @@ TEST(GatherIdentity, GatherRefusesPolarisedLight) {
   auto light = whiteLight(model.grid());
   light[1] = CDStokesVector(1, 0.5, 0, 0);
   auto out = whiteLight(model.grid());
-  EXPECT_THROW(model.gather({0, 0, 1}, Directions(3).view(), light, out), CDMathError);
+  EXPECT_THROW(model.gather({0, 0, 1}, Directions(3).view(), light, out), MathError);
 }
 
 // Sums in another order: rounding only.
 TEST(GatherIdentity, OfLambertsSurface) {
-  const auto grid = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  const auto grid = SpectralGrid::make({450.0, 550.0, 650.0});
   const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}),
                           0.5);
   const Directions from(90);
@@ -154,7 +151,7 @@ TEST(GatherIdentity, OfLambertsSurface) {
 namespace {
 /// Random polarised light of so many directions and bands, [direction][component][band].
 std::vector<float> unlikeLight(std::size_t directions, std::size_t bands, std::uint64_t seed) {
-  CDRandom random(seed);
+  Random random(seed);
   std::vector<float> light;
   for (std::size_t i = 0; i < directions; ++i)
     for (int component = 0; component < 4; ++component)
@@ -168,8 +165,8 @@ std::vector<float> unlikeLight(std::size_t directions, std::size_t bands, std::u
 // 5e-6: as above, and the two rotations, whose cosines and sines have single precision's digits.
 TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
   for (const auto& options :
-       {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::thesis),
-        with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)})
+       {specular_only, as_thesis, reciprocal, with(Shadowing::smith, DiffuseTerm::thesis),
+        with(Shadowing::vGroove, DiffuseTerm::thesis, false)})
     for (const std::size_t bands : {1u, 2u, 11u, 300u})
       for (const std::size_t count : {16u, 90u, 144u}) {
         const BRDFTorranceSparrow model = mixture(bands, options);
@@ -225,7 +222,7 @@ TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
 
 // Sums in double precision of the same numbers: rounding only.
 TEST(GatherIdentity, GatherEachOfLambertsSurface) {
-  const auto grid = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  const auto grid = SpectralGrid::make({450.0, 550.0, 650.0});
   const Directions from(90);
   const auto light = unlikeLight(90, 3, 5);
   for (const double s : {0.0, 0.5, 1.0}) {

@@ -1,6 +1,6 @@
 // A clear layer over a matt substrate (nw/matter/BRDFGlossyCoating.nw) against published numbers, the series
 // summed term by term, and facets drawn at random.
-#include "matter/BRDFGlossyCoating.hpp"
+#include "malus/surface/BRDFGlossyCoating.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -18,7 +18,7 @@ namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
 
 BRDFGlossyCoating coating(double n, double rho, double sigma) {
-  const auto grid = CDSpectralGrid::make({550.0});
+  const auto grid = SpectralGrid::make({550.0});
   return BRDFGlossyCoating(CDSpectralVector<double>(grid, n),
                            CDSpectralVector<double>(grid, rho), sigma);
 }
@@ -27,7 +27,7 @@ BRDFGlossyCoating varied(double sigma) {
   return BRDFGlossyCoating(ramp(grid, 1.3, 1.7), ramp(grid, 0.0, 0.9), sigma);
 }
 CDMuellerMatrix at(const BRDFGlossyCoating& model, double theta_i, double theta_r, double phi) {
-  return model.getBRDF(CDBRDFGeometry::fromDegrees(theta_i, theta_r, phi)).at(0);
+  return model.getBRDF(BRDFGeometry::fromDegrees(theta_i, theta_r, phi)).at(0);
 }
 
 /// Power that a smooth boundary passes, by Snell's angle as in a textbook.
@@ -48,7 +48,7 @@ struct Mean {
 std::array<Mean, 2> drawnTransmission(double zenith, double n, double sigma, int draws) {
   const CDVector source = CDVector::fromAngles(zenith, 0.4), k = -source;
   const CDVector s = normalized(cross({0, 0, 1}, k)), p = cross(k, s);
-  CDRandom random(7);
+  Random random(7);
   std::array<double, 2> sum{}, squares{};
   for (int i = 0; i < draws; ++i) {
     const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
@@ -118,7 +118,7 @@ TEST(BRDFGlossyCoatingIdentity, TheSeriesSummedTermByTerm) {
       for (int i = 0; i < 400; ++i) upward += bounce, bounce *= inner * rho;
       const double expected = upward / pi / (n * n) * (out.s + out.p) / 2;
       const double ours =
-          coating(n, rho, 0).getBRDF(CDBRDFGeometry::fromAngles(0.5, 1.1, 2)).at(0).getScalar();
+          coating(n, rho, 0).getBRDF(BRDFGeometry::fromAngles(0.5, 1.1, 2)).at(0).getScalar();
       EXPECT_NEAR(ours / expected, 1, 1e-5);  // the root at the critical angle, in steps
       EXPECT_GT(std::abs(ours / (expected * (1 - rho * inner)) - 1),
                 1e-2);  // control: no series
@@ -155,9 +155,9 @@ TEST(BRDFGlossyCoatingIdentity, TheRoughBoundaryPassesWhatItsFacetsPass) {
       EXPECT_NEAR(ours0, drawn[0].value,
                   5 * drawn[0].error + 5e-5);  // straight lines in the table
       // T1 from a matrix: f10/f00 of the volume alone is T1/T0 of the viewer; take it behind the lobe
-      const CDBRDFGeometry g = CDBRDFGeometry::fromAngles(0.0, zenith, 0);
+      const BRDFGeometry g = BRDFGeometry::fromAngles(0.0, zenith, 0);
       const auto facets =
-          BRDFTorranceSparrow(1.5, 0, sigma, {CDShadowing::vGroove, CDDiffuseTerm::none, true})
+          BRDFTorranceSparrow(1.5, 0, sigma, {Shadowing::vGroove, DiffuseTerm::none, true})
               .at(g);
       const CDMuellerMatrix f = model.getBRDF(g).at(0);
       const double ours1 = ours0 * (f.getMueller(1, 0) - facets.getMueller(1, 0)) /
@@ -199,7 +199,7 @@ TEST(BRDFGlossyCoatingIdentity, GatherIsTheSumOfScatter) {
     const BRDFGlossyCoating model = varied(sigma);
     constexpr std::size_t count = 40;
     std::array<float, count> x, y, z, w;
-    CDRandom random(3);
+    Random random(3);
     for (std::size_t i = 0; i < count; ++i) {
       const CDVector v = CDVector::fromAngles(1.7 * random.uniform(), 6 * random.uniform());
       x[i] = float(v.x), y[i] = float(v.y), z[i] = float(v.z), w[i] = 0.05f;
@@ -208,7 +208,7 @@ TEST(BRDFGlossyCoatingIdentity, GatherIsTheSumOfScatter) {
     CDSpectralVector<CDStokesVector> light(model.grid(), CDStokesVector(2.0)),
         fast(model.grid()), plain(model.grid());
     fast.polarize(), plain.polarize();
-    const CDLightDirections from{count, x.data(), y.data(), z.data(), w.data()};
+    const LightDirections from{count, x.data(), y.data(), z.data(), w.data()};
     model.gather(viewer, from, light, fast);
     model.CDBRDFModel::gather(viewer, from, light, plain);
     for (std::size_t band = 0; band < light.size(); ++band)
@@ -232,12 +232,12 @@ TEST(BRDFGlossyCoatingInvariant, TheSamplerGivesTheDHR) {
 
 TEST(BRDFGlossyCoatingIdentity, ImpossibleCoatingsAreRefused) {
   for (const double bad : {-0.1, std::numeric_limits<double>::quiet_NaN(), 1e9}) {
-    EXPECT_THROW(coating(bad, 0.5, 0.1), CDMathError);
-    EXPECT_THROW(coating(1.5, bad, 0.1), CDMathError);
-    EXPECT_THROW(coating(1.5, 0.5, bad), CDMathError);
+    EXPECT_THROW(coating(bad, 0.5, 0.1), MathError);
+    EXPECT_THROW(coating(1.5, bad, 0.1), MathError);
+    EXPECT_THROW(coating(1.5, 0.5, bad), MathError);
   }
-  EXPECT_THROW(coating(0.99, 0.5, 0.1), CDMathError);
-  EXPECT_THROW(coating(1.5, 0.5, 1e-7), CDMathError);
-  EXPECT_THROW(coating(1.5, 0.5, 0.1).getDHR(pi / 2), CDMathError);
-  EXPECT_THROW(coating(1.5, 0.5, 0).sample({0, 0, -1}, 0.1, 0.2, 0.3), CDMathError);
+  EXPECT_THROW(coating(0.99, 0.5, 0.1), MathError);
+  EXPECT_THROW(coating(1.5, 0.5, 1e-7), MathError);
+  EXPECT_THROW(coating(1.5, 0.5, 0.1).getDHR(pi / 2), MathError);
+  EXPECT_THROW(coating(1.5, 0.5, 0).sample({0, 0, -1}, 0.1, 0.2, 0.3), MathError);
 }

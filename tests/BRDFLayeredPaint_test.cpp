@@ -1,6 +1,6 @@
 // A layered paint (nw/matter/BRDFLayeredPaint.nw) against the glossy coating, Torrance-Sparrow facets, and what all
-// models must pass. Its bodies are solved by nw/world/PigmentLight.nw, which has a test of its own.
-#include "matter/BRDFLayeredPaint.hpp"
+// models must pass. Its bodies are solved by nw/world/PaintScattering.nw, which has a test of its own.
+#include "malus/surface/BRDFLayeredPaint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
-#include "matter/BRDFGlossyCoating.hpp"
-#include "world/PigmentLight.hpp"
+#include "malus/air/PaintScattering.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/surface/BRDFGlossyCoating.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -20,17 +20,17 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 // Bodies of two bands, a white coat over grey and a dark coat, mixed differently in each of the bands of a grid.
-CDPaintVolume mixedBody(const CDSpectralVector<double>& n) {
-  const auto two = CDSpectralGrid::make({500.0, 600.0});
-  const CDPaintSurface face(CDSpectralVector<double>(two, 1.5), {}, 0);
+PaintVolume mixedBody(const CDSpectralVector<double>& n) {
+  const auto two = SpectralGrid::make({500.0, 600.0});
+  const PaintSurface face(CDSpectralVector<double>(two, 1.5), {}, 0);
   CDSpectralVector<double> pigment_n(two, 2.7), pigment_k(two, 0.0), ground(two, 0.4);
   pigment_n[1] = 1.8, pigment_k[1] = 0.4, ground[1] = 0;
-  static const CDPaintVolume solved =
+  static const PaintVolume solved =
       paintVolume(face, {{{{pigment_n, pigment_k, {110, 1.2}, 0.1}}, 5}}, ground);
-  CDPaintVolume body(n.size(), solved.orders());
+  PaintVolume body(n.size(), solved.orders());
   for (std::size_t m = 0; m < body.orders(); ++m)
-    for (std::size_t out = 0; out < CDPaintVolume::nodes; ++out)
-      for (std::size_t in = 0; in < CDPaintVolume::nodes; ++in)
+    for (std::size_t out = 0; out < PaintVolume::nodes; ++out)
+      for (std::size_t in = 0; in < PaintVolume::nodes; ++in)
         for (std::size_t e = 0; e < 16; ++e)
           for (std::size_t band = 0; band < n.size(); ++band) {
             const double share = static_cast<double>(band) / static_cast<double>(n.size());
@@ -41,20 +41,20 @@ CDPaintVolume mixedBody(const CDSpectralVector<double>& n) {
 }
 BRDFLayeredPaint varied(double sigma, bool film) {
   const CDSpectralVector<double> n(manyBands(), 1.5);
-  std::vector<CDPaintFilm> films;
+  std::vector<PaintFilm> films;
   if (film) films.push_back({ramp(manyBands(), 1.35, 2.2), 140});
-  return BRDFLayeredPaint(CDPaintSurface(n, films, sigma), mixedBody(n));
+  return BRDFLayeredPaint(PaintSurface(n, films, sigma), mixedBody(n));
 }
 /// One band, so that many draws take little time.
 BRDFLayeredPaint white(double sigma, bool film) {
-  const CDSpectralVector<double> n(CDSpectralGrid::make({550.0}), 1.5);
-  std::vector<CDPaintFilm> films;
+  const CDSpectralVector<double> n(SpectralGrid::make({550.0}), 1.5);
+  std::vector<PaintFilm> films;
   if (film) films.push_back({CDSpectralVector<double>(n.getGrid(), 2.0), 140});
-  return BRDFLayeredPaint(CDPaintSurface(n, films, sigma), mixedBody(n));
+  return BRDFLayeredPaint(PaintSurface(n, films, sigma), mixedBody(n));
 }
 BRDFLayeredPaint unpigmented(double n, double rho, double sigma) {
-  const auto grid = CDSpectralGrid::make({550.0});
-  const CDPaintSurface face(CDSpectralVector<double>(grid, n), {}, sigma);
+  const auto grid = SpectralGrid::make({550.0});
+  const PaintSurface face(CDSpectralVector<double>(grid, n), {}, sigma);
   return BRDFLayeredPaint(face, paintVolume(face, {}, CDSpectralVector<double>(grid, rho)));
 }
 }  // namespace
@@ -63,7 +63,7 @@ BRDFLayeredPaint unpigmented(double n, double rho, double sigma) {
 TEST(BRDFLayeredPaintIdentity, WithoutPigmentItIsTheGlossyCoating) {
   for (const double sigma : {0.0, 0.2})
     for (const double rho : {0.0, 0.5, 1.0}) {
-      const auto grid = CDSpectralGrid::make({550.0});
+      const auto grid = SpectralGrid::make({550.0});
       const BRDFGlossyCoating coating(CDSpectralVector<double>(grid, 1.5),
                                       CDSpectralVector<double>(grid, rho), sigma);
       const BRDFLayeredPaint paint = unpigmented(1.5, rho, sigma),
@@ -107,10 +107,10 @@ TEST(BRDFLayeredPaintIdentity, DHRIsTheIntegral) {
 
 // What leaves the body is polarised by the face, along the plane of view: F-BEAM's assumption would be zero.
 TEST(BRDFLayeredPaintPublished, LightFromInsideIsPolarised) {
-  const auto f = unpigmented(1.5, 1, 0).getBRDF(CDBRDFGeometry::fromDegrees(0, 60, 0)).at(0);
+  const auto f = unpigmented(1.5, 1, 0).getBRDF(BRDFGeometry::fromDegrees(0, 60, 0)).at(0);
   EXPECT_NEAR(f.getMueller(1, 0) / f.getScalar(), -0.0874 / 0.9108,
               3e-4);  // Ellis, by hand in ch. BRDFGlossyCoating
-  const auto varied_f = varied(0, false).getBRDF(CDBRDFGeometry::fromDegrees(0, 60, 0));
+  const auto varied_f = varied(0, false).getBRDF(BRDFGeometry::fromDegrees(0, 60, 0));
   EXPECT_LT(varied_f.at(0).getMueller(1, 0), -0.05 * varied_f.at(0).getScalar());
 }
 
@@ -124,5 +124,5 @@ TEST(BRDFLayeredPaintInvariant, TheSampler) {
 
 TEST(BRDFLayeredPaintIdentity, FaceAndBodyMustFit) {
   const CDSpectralVector<double> n(manyBands(), 1.5);
-  EXPECT_THROW(BRDFLayeredPaint(CDPaintSurface(n, {}, 0), CDPaintVolume(3, 1)), CDMathError);
+  EXPECT_THROW(BRDFLayeredPaint(PaintSurface(n, {}, 0), PaintVolume(3, 1)), MathError);
 }

@@ -1,5 +1,5 @@
 // Five wavelengths and a measured spectrum (nw/matter/BRDFNEFDS.nw).
-#include "matter/BRDFNEFDS.hpp"
+#include "malus/surface/BRDFNEFDS.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -16,10 +16,10 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double sphere = 20 * degree;
 
-CDBeardMaxwellParameters lasers() {
-  const auto grid = CDSpectralGrid::make({350.0, 647.0, 1060.0, 3390.0, 10600.0});
-  CDBeardMaxwellParameters p{{grid, 1.3},  {grid, 7.5},  {grid, 0.01},
-                             {grid, 0.25}, {grid, 0.02}, {grid, 0.01}};
+BeardMaxwellParameters lasers() {
+  const auto grid = SpectralGrid::make({350.0, 647.0, 1060.0, 3390.0, 10600.0});
+  BeardMaxwellParameters p{{grid, 1.3},  {grid, 7.5},  {grid, 0.01},
+                           {grid, 0.25}, {grid, 0.02}, {grid, 0.01}};
   for (std::size_t j = 0; j < 5; ++j)
     p.n[j] += 0.3 * double(j), p.k[j] += double(j), p.bias[j] += 0.004 * double(j),
         p.sigma[j] -= 0.03 * double(j);
@@ -27,7 +27,7 @@ CDBeardMaxwellParameters lasers() {
 }
 
 CDSpectralVector<double> measured() {
-  const auto grid = CDSpectralGrid::make({350.0, 400.0, 500.0, 647.0, 900.0, 5000.0, 10600.0});
+  const auto grid = SpectralGrid::make({350.0, 400.0, 500.0, 647.0, 900.0, 5000.0, 10600.0});
   CDSpectralVector<double> dhr(grid, 0.0);
   for (std::size_t j = 0; j < dhr.size(); ++j) dhr[j] = 0.3 + 0.05 * double(j);
   return dhr;
@@ -55,7 +55,7 @@ TEST(BRDFNEFDSIdentity, TheDifferentialsAsPrintedDoNotClose) {
       for (int a = 0; a < azimuths; ++a) {
         const double zenith = 90 * degree * (z + 0.5) / zeniths;
         m.evaluate(
-            CDBRDFGeometry::fromAngles(sphere, zenith, 180 * degree * (a + 0.5) / azimuths), f);
+            BRDFGeometry::fromAngles(sphere, zenith, 180 * degree * (a + 0.5) / azimuths), f);
         sum += f.at(band).getScalar() * std::cos(zenith) * (sine ? std::sin(zenith) : 1);
       }
     return sum * 2 * 90 * degree / zeniths * 180 * degree / azimuths;
@@ -72,7 +72,7 @@ TEST(BRDFNEFDSIdentity, TheDifferentialsAsPrintedDoNotClose) {
 TEST(BRDFNEFDSIdentity, AtALaserItIsBeardAndMaxwell) {
   const BRDFNEFDS model(lasers(), measured(), sphere);
   const BRDFBeardMaxwell reference(lasers());
-  const auto g = CDBRDFGeometry::fromDegrees(30, 55, 130);
+  const auto g = BRDFGeometry::fromDegrees(30, 55, 130);
   const auto f = model.getBRDF(g), r = reference.getBRDF(g);
   const double scale = measured()[3] / reference.getDHR(sphere)[1];
   for (int e = 0; e < 16; ++e) {
@@ -84,19 +84,19 @@ TEST(BRDFNEFDSIdentity, AtALaserItIsBeardAndMaxwell) {
 }
 
 TEST(BRDFNEFDSIdentity, LambertsShapeIsTheSameAtAllLasers) {
-  const auto grid = CDSpectralGrid::make({500.0, 600.0});
-  CDBeardMaxwellParameters p{{grid, 1.5}, {grid, 0.0}, {grid, 0.0},
-                             {grid, 0.3}, {grid, 0.0}, {grid, 0.0}};
+  const auto grid = SpectralGrid::make({500.0, 600.0});
+  BeardMaxwellParameters p{{grid, 1.5}, {grid, 0.0}, {grid, 0.0},
+                           {grid, 0.3}, {grid, 0.0}, {grid, 0.0}};
   p.rho_d[0] = 0.10, p.rho_d[1] = 0.12;  // amounts differ, shapes do not
-  CDSpectralVector<double> dhr(CDSpectralGrid::make({550.0}), 0.40);
+  CDSpectralVector<double> dhr(SpectralGrid::make({550.0}), 0.40);
   const BRDFNEFDS model(p, dhr, sphere);
-  EXPECT_NEAR(model.getBRDF(CDBRDFGeometry::fromDegrees(10, 20, 30)).at(0).getScalar(),
+  EXPECT_NEAR(model.getBRDF(BRDFGeometry::fromDegrees(10, 20, 30)).at(0).getScalar(),
               0.40 / std::numbers::pi, 1e-14);
 }
 
 TEST(BRDFNEFDSIdentity, TheLightIsTheMatrixTimesTheLight) {
   const BRDFNEFDS model(lasers(), measured(), sphere);
-  const auto g = CDBRDFGeometry::fromDegrees(20, 60, 140);
+  const auto g = BRDFGeometry::fromDegrees(20, 60, 140);
   for (const bool polarized : {true, false}) {
     const CDSpectralVector<CDStokesVector> in(
         model.grid(), polarized ? CDStokesVector(1, .4, -.3, .2) : CDStokesVector(1));
@@ -114,7 +114,7 @@ TEST(BRDFNEFDSIdentity, TheLightIsTheMatrixTimesTheLight) {
 TEST(BRDFNEFDSInvariant, MatricesAreRealizable) {
   const BRDFNEFDS model(lasers(), measured(), sphere);
   for (const double phi : {0.0, 1.0, 2.0, 3.0}) {
-    const auto f = model.getBRDF(CDBRDFGeometry::fromAngles(0.5, 1.2, phi));
+    const auto f = model.getBRDF(BRDFGeometry::fromAngles(0.5, 1.2, phi));
     for (std::size_t j = 0; j < f.size(); ++j) EXPECT_TRUE(isRealizable(f.at(j), 1e-12));
   }
   EXPECT_FALSE(
@@ -141,12 +141,12 @@ TEST(BRDFNEFDSInvariant, PassesWhatEveryModelMust) {
 
 TEST(BRDFNEFDSInvariant, RefusesWhatCannotBe) {
   EXPECT_NO_THROW(BRDFNEFDS(lasers(), measured(), sphere));
-  const CDSpectralVector<double> beyond(CDSpectralGrid::make({300.0, 500.0}), 0.5);
-  EXPECT_THROW(BRDFNEFDS(lasers(), beyond, sphere), CDGridError);
+  const CDSpectralVector<double> beyond(SpectralGrid::make({300.0, 500.0}), 0.5);
+  EXPECT_THROW(BRDFNEFDS(lasers(), beyond, sphere), GridError);
   auto dhr = measured();
   dhr[2] = 1.01;
-  EXPECT_THROW(BRDFNEFDS(lasers(), dhr, sphere), CDMathError);
+  EXPECT_THROW(BRDFNEFDS(lasers(), dhr, sphere), MathError);
   auto dark = lasers();
   dark.bias[1] = dark.rho_d[1] = dark.rho_v[1] = 0;
-  EXPECT_THROW(BRDFNEFDS(dark, measured(), sphere), CDMathError);
+  EXPECT_THROW(BRDFNEFDS(dark, measured(), sphere), MathError);
 }

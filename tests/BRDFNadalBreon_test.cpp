@@ -1,5 +1,5 @@
 // Vegetation and soil (nw/matter/BRDFNadalBreon.nw) against the published formula with Snell's angles.
-#include "matter/BRDFNadalBreon.hpp"
+#include "malus/surface/BRDFNadalBreon.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 BRDFNadalBreon land(double body, double rho, double beta, double n = 1.5) {
-  const auto grid = CDSpectralGrid::make({670.0});
+  const auto grid = SpectralGrid::make({670.0});
   return BRDFNadalBreon(CDSpectralVector<double>(grid, body), rho, beta, n);
 }
 BRDFNadalBreon varied() { return BRDFNadalBreon(ramp(manyBands(), 0.0, 0.4), 0.03, 10); }
@@ -73,7 +73,7 @@ TEST(BRDFNadalBreonPublished, LeavesInAllDirections) {
 
 TEST(BRDFNadalBreonIdentity, TheExampleOfTheChapter) {
   const auto f =
-      land(0.04, 0.03, 0.25 / 0.03).getBRDF(CDBRDFGeometry::fromDegrees(60, 60, 180)).at(0);
+      land(0.04, 0.03, 0.25 / 0.03).getBRDF(BRDFGeometry::fromDegrees(60, 60, 180)).at(0);
   EXPECT_NEAR(polarized(f).reflectance, 0.0155, 5e-5);
 }
 
@@ -101,15 +101,15 @@ TEST(BRDFNadalBreonInvariant, ReciprocalRealizableAndFast) {
   expectNoAllocation(model);
   expectScoreAndHorizon(model);
   EXPECT_LE(largestDHR(model), 1);
-  const auto back = model.getBRDF(CDBRDFGeometry::fromDegrees(30, 30, 0)).at(0);
+  const auto back = model.getBRDF(BRDFGeometry::fromDegrees(30, 30, 0)).at(0);
   EXPECT_NEAR(back.getMueller(1, 0), 0, 1e-15);  // the sun behind the viewer
   EXPECT_TRUE(std::isfinite(back.getScalar()));
 }
 
 TEST(BRDFNadalBreonInvariant, EnergyIsDemanded) {
   EXPECT_GT(largestDHR(land(0, 0.03, 8)), 0.01);
-  EXPECT_THROW(land(0.99, 0.03, 30), CDMathError);
-  EXPECT_THROW(land(0.5, 1, 100), CDMathError);
+  EXPECT_THROW(land(0.99, 0.03, 30), MathError);
+  EXPECT_THROW(land(0.5, 1, 100), MathError);
 }
 
 TEST(BRDFNadalBreonIdentity, DHRAgreesWithThePlainIntegration) {
@@ -126,12 +126,12 @@ TEST(BRDFNadalBreonInvariant, TheSampler) {
 
 TEST(BRDFNadalBreonIdentity, ImpossibleLandIsRefused) {
   for (const double bad : {-0.1, 0.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(land(0.1, bad, 8), CDMathError);
-    EXPECT_THROW(land(0.1, 0.03, bad), CDMathError);
-    EXPECT_THROW(land(0.1, 0.03, 8, bad), CDMathError);
+    EXPECT_THROW(land(0.1, bad, 8), MathError);
+    EXPECT_THROW(land(0.1, 0.03, bad), MathError);
+    EXPECT_THROW(land(0.1, 0.03, 8, bad), MathError);
     if (bad != 0) {
-      EXPECT_THROW(land(bad, 0.03, 8), CDMathError);
+      EXPECT_THROW(land(bad, 0.03, 8), MathError);
     }
   }
-  EXPECT_THROW(land(0.1, 0.03, 8).getDHR(pi / 2), CDMathError);
+  EXPECT_THROW(land(0.1, 0.03, 8).getDHR(pi / 2), MathError);
 }

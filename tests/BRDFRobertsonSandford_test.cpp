@@ -1,5 +1,5 @@
 // Robertson and Sandford's paint (nw/matter/BRDFRobertsonSandford.nw) against the integrals its norms stand for.
-#include "matter/BRDFRobertsonSandford.hpp"
+#include "malus/surface/BRDFRobertsonSandford.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 BRDFRobertsonSandford paint(double emissivity, double diffuse, double b, double e) {
-  const auto grid = CDSpectralGrid::make({10000.0});
+  const auto grid = SpectralGrid::make({10000.0});
   const auto of = [&](double x) { return CDSpectralVector<double>(grid, x); };
   return BRDFRobertsonSandford(of(emissivity), of(diffuse), of(b), of(e));
 }
@@ -117,13 +117,13 @@ TEST(BRDFRobertsonSandfordInvariant, TheSampler) {
 
 TEST(BRDFRobertsonSandfordIdentity, ImpossiblePaintsAreRefused) {
   for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(paint(bad, 0.1, 0.2, 0.3), CDMathError);
-    EXPECT_THROW(paint(0.1, bad, 0.2, 0.3), CDMathError);
-    EXPECT_THROW(paint(0.1, 0.1, bad, 0.3), CDMathError);
-    EXPECT_THROW(paint(0.1, 0.1, 0.2, bad), CDMathError);
+    EXPECT_THROW(paint(bad, 0.1, 0.2, 0.3), MathError);
+    EXPECT_THROW(paint(0.1, bad, 0.2, 0.3), MathError);
+    EXPECT_THROW(paint(0.1, 0.1, bad, 0.3), MathError);
+    EXPECT_THROW(paint(0.1, 0.1, 0.2, bad), MathError);
   }
-  EXPECT_THROW(paint(0.1, 0.1, 0.2, 0), CDMathError);
-  EXPECT_THROW(paint(0.5, 0.5, 0.2, 0.3), CDMathError);  // G(.2) is below one
+  EXPECT_THROW(paint(0.1, 0.1, 0.2, 0), MathError);
+  EXPECT_THROW(paint(0.5, 0.5, 0.2, 0.3), MathError);  // G(.2) is below one
   EXPECT_NO_THROW(paint(0.5, 0.5, 0, 0.3));
-  EXPECT_THROW(paint(0.1, 0.1, 0.2, 0.3).getDHR(pi / 2), CDMathError);
+  EXPECT_THROW(paint(0.1, 0.1, 0.2, 0.3).getDHR(pi / 2), MathError);
 }

@@ -1,6 +1,6 @@
 // The rough metal (nw/matter/BRDFTorranceSparrow.nw) against field vectors, std::complex and
 // 4x4 algebra.
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -13,8 +13,8 @@
 #include <stdexcept>
 
 #include "DrawnDirections.hpp"
-#include "light/CDError.hpp"
-#include "matter/DHRTorranceSparrow.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/surface/DHRTorranceSparrow.hpp"
 
 using namespace malus;
 
@@ -26,16 +26,13 @@ constexpr double degree = pi / 180;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double false_alarm = 1e-6;  // of one chi-squared test; the suite makes fewer than ten
 
-constexpr CDTorranceSparrowOptions with(CDShadowing shadowing, CDDiffuseTerm diffuse,
-                                        bool polarized = true) {
+constexpr TorranceSparrowOptions with(Shadowing shadowing, DiffuseTerm diffuse,
+                                      bool polarized = true) {
   return {shadowing, diffuse, polarized};
 }
-constexpr CDTorranceSparrowOptions specular_only =
-    with(CDShadowing::vGroove, CDDiffuseTerm::none);
-constexpr CDTorranceSparrowOptions as_thesis =
-    with(CDShadowing::vGroove, CDDiffuseTerm::thesis);
-constexpr CDTorranceSparrowOptions reciprocal =
-    with(CDShadowing::vGroove, CDDiffuseTerm::reciprocal);
+constexpr TorranceSparrowOptions specular_only = with(Shadowing::vGroove, DiffuseTerm::none);
+constexpr TorranceSparrowOptions as_thesis = with(Shadowing::vGroove, DiffuseTerm::thesis);
+constexpr TorranceSparrowOptions reciprocal = with(Shadowing::vGroove, DiffuseTerm::reciprocal);
 
 Matrix elements(const CDMuellerMatrix& m) {
   Matrix out;
@@ -133,7 +130,7 @@ double angle(int low_tenths, int high_tenths) {
 double fraction() { return *rc::gen::inRange(1, 1000) / 1000.0; }
 
 const std::vector<double> four_bands{450, 550, 650, 750};
-CDSpectralVector<double> spectrum(const CDSpectralGridPtr& grid,
+CDSpectralVector<double> spectrum(const SpectralGridPtr& grid,
                                   const std::vector<double>& values) {
   CDSpectralVector<double> v(grid);
   for (std::size_t i = 0; i < values.size(); ++i) v[i] = values[i];
@@ -141,7 +138,7 @@ CDSpectralVector<double> spectrum(const CDSpectralGridPtr& grid,
 }
 
 /// A metal whose parameters all vary, with a change of roughness after the second band.
-BRDFTorranceSparrow varied(const CDSpectralGridPtr& grid, CDTorranceSparrowOptions options) {
+BRDFTorranceSparrow varied(const SpectralGridPtr& grid, TorranceSparrowOptions options) {
   return BRDFTorranceSparrow(spectrum(grid, {0.4, 1.5, 0.2, 1.3}),
                              spectrum(grid, {2.9, 0, 3.4, 7.5}),
                              spectrum(grid, {0.2, 0.2, 0.3, 0.15}), options);
@@ -150,7 +147,7 @@ BRDFTorranceSparrow varied(const CDSpectralGridPtr& grid, CDTorranceSparrowOptio
 
 // Finding 1 of the inventory; the digits it prints, half a unit of the last as tolerance.
 TEST(BRDFTorranceSparrowPublished, ThePlateOfSection71) {
-  const auto plate = CDBRDFGeometry::fromDegrees(30, 40, 180);
+  const auto plate = BRDFGeometry::fromDegrees(30, 40, 180);
   const CDMuellerMatrix f = BRDFTorranceSparrow(0.405, 2.950, 0.2, specular_only).at(plate);
   EXPECT_NEAR(f.getMueller(0, 0), 1.17187, 5e-6);
   EXPECT_NEAR(f.getMueller(1, 1), 1.17187, 5e-6);
@@ -170,12 +167,12 @@ TEST(BRDFTorranceSparrowPublished, ThePlateOfSection71) {
 TEST(BRDFTorranceSparrowPublished, TheDiffuseTermOfSection71) {
   const BRDFTorranceSparrow copper(0.405, 2.950, 0.2);
   const auto diffuse = [&](double theta_i, double theta_r) {
-    const CDMuellerMatrix f = copper.at(CDBRDFGeometry::fromDegrees(theta_i, theta_r, 180));
+    const CDMuellerMatrix f = copper.at(BRDFGeometry::fromDegrees(theta_i, theta_r, 180));
     return f.getMueller(0, 0) - f.getMueller(1, 1);
   };
   EXPECT_NEAR(diffuse(30, 40), 0.0085, 5e-5);
   EXPECT_NEAR(diffuse(40, 30), 0.0044, 5e-5);
-  EXPECT_NEAR(copper.at(CDBRDFGeometry::fromDegrees(30, 40, 180)).getScalar(), 1.18, 5e-3);
+  EXPECT_NEAR(copper.at(BRDFGeometry::fromDegrees(30, 40, 180)).getScalar(), 1.18, 5e-3);
 }
 
 RC_GTEST_PROP(BRDFTorranceSparrowIdentity, AllSixteenElementsAgreeWithFieldVectors, ()) {
@@ -184,7 +181,7 @@ RC_GTEST_PROP(BRDFTorranceSparrowIdentity, AllSixteenElementsAgreeWithFieldVecto
   const double sigma = 0.1 + 0.5 * fraction();
   const Matrix expected = reference(theta_i, theta_r, phi, n, k, sigma);
   const auto f = BRDFTorranceSparrow(n, k, sigma, specular_only)
-                     .at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi));
+                     .at(BRDFGeometry::fromAngles(theta_i, theta_r, phi));
   const double f00 = expected[0];
   RC_PRE(f00 > 1e-40);
   // near the critical angle of a thin medium the coefficients go as the root of the distance to
@@ -195,7 +192,7 @@ RC_GTEST_PROP(BRDFTorranceSparrowIdentity, AllSixteenElementsAgreeWithFieldVecto
 
 TEST(BRDFTorranceSparrowIdentity, NegativeControlAnotherTiltIsNoticed) {
   const auto f = elements(BRDFTorranceSparrow(1.3, 7.5, 0.2, specular_only)
-                              .at(CDBRDFGeometry::fromAngles(0.5, 0.7, 2.5)));
+                              .at(BRDFGeometry::fromAngles(0.5, 0.7, 2.5)));
   EXPECT_LT(largestDifference(f, reference(0.5, 0.7, 2.5, 1.3, 7.5, 0.2)), 1e-12);
   EXPECT_GT(largestDifference(f, reference(0.5, 0.7, 2.5 + 1e-6, 1.3, 7.5, 0.2)), 1e-9);
   EXPECT_GT(largestDifference(f, reference(0.5, 0.7, -2.5, 1.3, 7.5, 0.2)),
@@ -203,9 +200,8 @@ TEST(BRDFTorranceSparrowIdentity, NegativeControlAnotherTiltIsNoticed) {
 }
 
 TEST(BRDFTorranceSparrowIdentity, WithoutShadowingTheGrooveFactorIsMissing) {
-  const auto f =
-      BRDFTorranceSparrow(1.3, 7.5, 0.2, with(CDShadowing::none, CDDiffuseTerm::none))
-          .at(CDBRDFGeometry::fromAngles(0.5, 1.4, 3.0));
+  const auto f = BRDFTorranceSparrow(1.3, 7.5, 0.2, with(Shadowing::none, DiffuseTerm::none))
+                     .at(BRDFGeometry::fromAngles(0.5, 1.4, 3.0));
   const Matrix bare = reference(0.5, 1.4, 3.0, 1.3, 7.5, 0.2, false);
   EXPECT_NEAR(f.getScalar() / bare[0], 1, 1e-12);  // rounding, as above
   EXPECT_LT(reference(0.5, 1.4, 3.0, 1.3, 7.5, 0.2)[0], 0.9 * bare[0]);
@@ -215,23 +211,23 @@ TEST(BRDFTorranceSparrowIdentity, WithoutShadowingTheGrooveFactorIsMissing) {
 // uncorrelated.
 TEST(BRDFTorranceSparrowIdentity, SmithsShadowingIsBetweenZeroAndOne) {
   for (const double theta : {0.1, 0.8, 1.3, 1.5}) {
-    const auto g = CDBRDFGeometry::fromAngles(theta, theta, pi);
-    const auto f00 = [&](CDShadowing s) {
-      return BRDFTorranceSparrow(1.3, 7.5, 0.4, with(s, CDDiffuseTerm::none)).at(g).getScalar();
+    const auto g = BRDFGeometry::fromAngles(theta, theta, pi);
+    const auto f00 = [&](Shadowing s) {
+      return BRDFTorranceSparrow(1.3, 7.5, 0.4, with(s, DiffuseTerm::none)).at(g).getScalar();
     };
-    EXPECT_LE(f00(CDShadowing::smith), f00(CDShadowing::smithCorrelated));
-    EXPECT_LE(f00(CDShadowing::smithCorrelated), f00(CDShadowing::none));
-    EXPECT_GT(f00(CDShadowing::smith), 0);
+    EXPECT_LE(f00(Shadowing::smith), f00(Shadowing::smithCorrelated));
+    EXPECT_LE(f00(Shadowing::smithCorrelated), f00(Shadowing::none));
+    EXPECT_GT(f00(Shadowing::smith), 0);
     if (theta > 1) {
-      EXPECT_LT(f00(CDShadowing::smith), 0.99 * f00(CDShadowing::smithCorrelated));
-      EXPECT_LT(f00(CDShadowing::smithCorrelated), 0.99 * f00(CDShadowing::none));
+      EXPECT_LT(f00(Shadowing::smith), 0.99 * f00(Shadowing::smithCorrelated));
+      EXPECT_LT(f00(Shadowing::smithCorrelated), 0.99 * f00(Shadowing::none));
     }
   }
 }
 
 TEST(BRDFTorranceSparrowIdentity, NormalIncidence) {
   const auto f =
-      BRDFTorranceSparrow(2, 0, 0.2, specular_only).at(CDBRDFGeometry::fromDegrees(0, 0, 0));
+      BRDFTorranceSparrow(2, 0, 0.2, specular_only).at(BRDFGeometry::fromDegrees(0, 0, 0));
   const double expected = (1.0 / 9) / (8 * pi * 0.04);  // R = ((n-1)/(n+1))^2, D(0)/4
   EXPECT_NEAR(f.getMueller(0, 0), expected, 1e-14);
   EXPECT_NEAR(f.getMueller(0, 1), 0, 1e-15);
@@ -239,14 +235,14 @@ TEST(BRDFTorranceSparrowIdentity, NormalIncidence) {
               1e-14);                                 // the azimuth of s is free at the normal,
   EXPECT_NEAR(f.getMueller(3, 3), -expected, 1e-14);  // the handedness is not: it reverses
   const auto near = BRDFTorranceSparrow(2, 0, 0.2, specular_only)
-                        .at(CDBRDFGeometry::fromDegrees(1e-6, 1e-6, 180));
+                        .at(BRDFGeometry::fromDegrees(1e-6, 1e-6, 180));
   EXPECT_NEAR(near.getMueller(0, 0), expected, 1e-12);  // second order in 2e-8 rad
   EXPECT_NEAR(near.getMueller(2, 2), -expected, 1e-12);
 }
 
 TEST(BRDFTorranceSparrowIdentity, TotalReflectionReflectsAllAndRetards) {
   // beta = 60 degrees on the mean facet; the critical angle of n = .7 is 44.4 degrees
-  const auto g = CDBRDFGeometry::fromDegrees(60, 60, 180);
+  const auto g = BRDFGeometry::fromDegrees(60, 60, 180);
   const Matrix f = elements(BRDFTorranceSparrow(0.7, 0, 0.2, specular_only).at(g));
   const double factor =
       reference(60 * degree, 60 * degree, pi, 1.0, 1e9, 0.2)[0];  // a perfect mirror
@@ -257,7 +253,7 @@ TEST(BRDFTorranceSparrowIdentity, TotalReflectionReflectsAllAndRetards) {
 }
 
 TEST(BRDFTorranceSparrowIdentity, CircularElementsVanishExactlyWithoutAbsorption) {
-  const auto g = CDBRDFGeometry::fromDegrees(10, 50, 180);
+  const auto g = BRDFGeometry::fromDegrees(10, 50, 180);
   EXPECT_EQ(BRDFTorranceSparrow(1.7, 0, 0.2).at(g).getMueller(2, 3), 0);
   const auto absorbing = BRDFTorranceSparrow(1.7, 0.01, 0.2).at(g);
   EXPECT_NE(absorbing.getMueller(2, 3), 0);
@@ -268,40 +264,40 @@ TEST(BRDFTorranceSparrowIdentity, GrazingIsFiniteAndTheHorizonIsDark) {
   for (const auto options : {specular_only, as_thesis, reciprocal}) {
     const BRDFTorranceSparrow metal(1.3, 7.5, 0.3, options);
     for (const double theta_r : {89.0, 89.999, 90 - 1e-9}) {
-      const double f00 = metal.at(CDBRDFGeometry::fromDegrees(45, theta_r, 180)).getScalar();
+      const double f00 = metal.at(BRDFGeometry::fromDegrees(45, theta_r, 180)).getScalar();
       EXPECT_TRUE(std::isfinite(f00));
       EXPECT_GT(f00, 0);
     }
     for (const double theta_r : {90.0001, 120.0, 180.0})
-      EXPECT_EQ(elements(metal.at(CDBRDFGeometry::fromDegrees(45, theta_r, 180))), Matrix{});
-    EXPECT_EQ(elements(metal.at(CDBRDFGeometry::fromDegrees(91, 20, 180))), Matrix{});
+      EXPECT_EQ(elements(metal.at(BRDFGeometry::fromDegrees(45, theta_r, 180))), Matrix{});
+    EXPECT_EQ(elements(metal.at(BRDFGeometry::fromDegrees(91, 20, 180))), Matrix{});
   }
 }
 
 TEST(BRDFTorranceSparrowIdentity, ANaNShows) {
   const auto f =
-      BRDFTorranceSparrow(1.3, 7.5, 0.3).at(CDBRDFGeometry::fromAngles(0.3, not_a_number, 0));
+      BRDFTorranceSparrow(1.3, 7.5, 0.3).at(BRDFGeometry::fromAngles(0.3, not_a_number, 0));
   EXPECT_TRUE(std::isnan(f.getScalar()));
 }
 
 TEST(BRDFTorranceSparrowIdentity, AVerySmoothSurfaceIsDefined) {
   for (const double sigma : {1e-2, 1e-4, 1e-8}) {
     const BRDFTorranceSparrow mirror(1.5, 0, sigma);
-    const double peak = mirror.at(CDBRDFGeometry::fromDegrees(0, 0, 0)).getScalar();
+    const double peak = mirror.at(BRDFGeometry::fromDegrees(0, 0, 0)).getScalar();
     EXPECT_NEAR(peak * 8 * pi * sigma * sigma, 0.04, 1e-9);  // the diffuse term adds less
-    const double off = mirror.at(CDBRDFGeometry::fromDegrees(30, 40, 180)).getScalar();
+    const double off = mirror.at(BRDFGeometry::fromDegrees(30, 40, 180)).getScalar();
     EXPECT_GE(off, 0);
     EXPECT_LT(off, 1e-5);
   }
 }
 
 RC_GTEST_PROP(BRDFTorranceSparrowIdentity, FastScatteringEqualsTheMatrixTimesTheVector, ()) {
-  static const auto grid = CDSpectralGrid::make(four_bands);
+  static const auto grid = SpectralGrid::make(four_bands);
   const auto diffuse =
-      *rc::gen::element(CDDiffuseTerm::none, CDDiffuseTerm::thesis, CDDiffuseTerm::reciprocal);
+      *rc::gen::element(DiffuseTerm::none, DiffuseTerm::thesis, DiffuseTerm::reciprocal);
   const auto model =
-      varied(grid, with(CDShadowing::vGroove, diffuse, *rc::gen::arbitrary<bool>()));
-  const auto g = CDBRDFGeometry::fromAngles(angle(0, 890), angle(0, 890), angle(0, 3599));
+      varied(grid, with(Shadowing::vGroove, diffuse, *rc::gen::arbitrary<bool>()));
+  const auto g = BRDFGeometry::fromAngles(angle(0, 890), angle(0, 890), angle(0, 3599));
   CDSpectralVector<CDStokesVector> in(grid), fast(grid), plain(grid);
   for (std::size_t band = 0; band < 4; ++band) {
     const double s0 = fraction();
@@ -325,9 +321,9 @@ RC_GTEST_PROP(BRDFTorranceSparrowIdentity, FastScatteringEqualsTheMatrixTimesThe
 }
 
 TEST(BRDFTorranceSparrowIdentity, ScatterAddsAndNegativeControl) {
-  const auto grid = CDSpectralGrid::make(four_bands);
+  const auto grid = SpectralGrid::make(four_bands);
   const auto model = varied(grid, as_thesis);
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 170);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 170);
   const CDSpectralVector<CDStokesVector> in(grid, CDStokesVector(1, 0.5, 0.2, 0.1));
   CDSpectralVector<CDStokesVector> once(grid), twice(grid);
   model.scatter(g, 2, in, once);
@@ -340,11 +336,11 @@ TEST(BRDFTorranceSparrowIdentity, ScatterAddsAndNegativeControl) {
 }
 
 TEST(BRDFTorranceSparrowIdentity, SinglePrecisionKernelsAgree) {
-  const auto facet = facetGeometry(CDBRDFGeometry::fromDegrees(30, 50, 160));
+  const auto facet = facetGeometry(BRDFGeometry::fromDegrees(30, 50, 160));
   const auto shared = [&](auto real) {
     using Real = decltype(real);
     const auto r = [](double x) { return static_cast<Real>(x); };
-    return CDFacetLight<Real>{
+    return FacetLight<Real>{
         r(1.1),         r(0.01),        r(facet.cos_beta), r(facet.sin2_beta),
         r(facet.cos2i), r(facet.sin2i), r(facet.cos2r),    r(facet.sin2r)};
   };
@@ -368,10 +364,10 @@ TEST(BRDFTorranceSparrowIdentity, SinglePrecisionKernelsAgree) {
 }
 
 TEST(BRDFTorranceSparrowIdentity, TheUnpolarisedModelIsF00) {
-  const auto grid = CDSpectralGrid::make(four_bands);
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 150);
+  const auto grid = SpectralGrid::make(four_bands);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 150);
   const auto scalar =
-      varied(grid, with(CDShadowing::vGroove, CDDiffuseTerm::thesis, false)).getBRDF(g);
+      varied(grid, with(Shadowing::vGroove, DiffuseTerm::thesis, false)).getBRDF(g);
   const auto full = varied(grid, as_thesis).getBRDF(g);
   EXPECT_FALSE(scalar.anyPolarized());
   for (std::size_t band = 0; band < 4; ++band)
@@ -381,8 +377,8 @@ TEST(BRDFTorranceSparrowIdentity, TheUnpolarisedModelIsF00) {
 
 // Bands are independent: a spectrum of four is four models of one band.
 TEST(BRDFTorranceSparrowInvariant, BandsDoNotMix) {
-  const auto grid = CDSpectralGrid::make(four_bands);
-  const auto g = CDBRDFGeometry::fromDegrees(20, 60, 140);
+  const auto grid = SpectralGrid::make(four_bands);
+  const auto g = BRDFGeometry::fromDegrees(20, 60, 140);
   const auto all = varied(grid, reciprocal).getBRDF(g);
   const double n[]{0.4, 1.5, 0.2, 1.3}, k[]{2.9, 0, 3.4, 7.5}, sigma[]{0.2, 0.2, 0.3, 0.15};
   for (std::size_t band = 0; band < 4; ++band) {
@@ -400,7 +396,7 @@ RC_GTEST_PROP(BRDFTorranceSparrowInvariant, EveryMatrixIsRealizable, ()) {
   const auto f =
       BRDFTorranceSparrow(0.2 + 3 * fraction(), 5 * fraction(), 0.05 + 0.5 * fraction(),
                           options)
-          .at(CDBRDFGeometry::fromAngles(angle(0, 890), angle(0, 890), angle(0, 3599)));
+          .at(BRDFGeometry::fromAngles(angle(0, 890), angle(0, 890), angle(0, 3599)));
   RC_ASSERT(
       isRealizable(f, 1e-12 * (1 + f.getScalar())));  // eigenvalues of a 4x4 matrix, rounding
 }
@@ -409,8 +405,8 @@ RC_GTEST_PROP(BRDFTorranceSparrowInvariant, EveryMatrixIsRealizable, ()) {
 namespace {
 double reciprocityError(const BRDFTorranceSparrow& model, double theta_i, double theta_r,
                         double phi, const std::array<double, 4>& q) {
-  const Matrix forth = elements(model.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi)));
-  const Matrix back = elements(model.at(CDBRDFGeometry::fromAngles(theta_r, theta_i, -phi)));
+  const Matrix forth = elements(model.at(BRDFGeometry::fromAngles(theta_i, theta_r, phi)));
+  const Matrix back = elements(model.at(BRDFGeometry::fromAngles(theta_r, theta_i, -phi)));
   Matrix expected;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) expected[4 * i + j] = q[i] * back[4 * j + i] * q[j];
@@ -421,11 +417,11 @@ constexpr std::array<double, 4> q_right{1, 1, -1, 1}, q_wrong{1, 1, 1, -1};
 
 RC_GTEST_PROP(BRDFTorranceSparrowInvariant, Reciprocity, ()) {
   const double theta_i = angle(10, 890), theta_r = angle(10, 890), phi = angle(0, 3599);
-  const auto shadowing = *rc::gen::element(CDShadowing::none, CDShadowing::vGroove);
-  const auto diffuse = *rc::gen::element(CDDiffuseTerm::none, CDDiffuseTerm::reciprocal);
+  const auto shadowing = *rc::gen::element(Shadowing::none, Shadowing::vGroove);
+  const auto diffuse = *rc::gen::element(DiffuseTerm::none, DiffuseTerm::reciprocal);
   const BRDFTorranceSparrow model(0.2 + 3 * fraction(), 5 * fraction(), 0.1 + 0.5 * fraction(),
                                   with(shadowing, diffuse));
-  RC_PRE(model.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi)).getScalar() > 1e-40);
+  RC_PRE(model.at(BRDFGeometry::fromAngles(theta_i, theta_r, phi)).getScalar() > 1e-40);
   RC_ASSERT(reciprocityError(model, theta_i, theta_r, phi, q_right) <= 200 * rounding);
 }
 
@@ -437,7 +433,7 @@ TEST(BRDFTorranceSparrowInvariant, ReciprocityIsBrokenByTheThesisTermAndByWrongS
 }
 
 TEST(BRDFTorranceSparrowInvariant, TheDiffuseTermKnowsNothingOfTheMetal) {  // claim C3
-  const auto g = CDBRDFGeometry::fromDegrees(20, 70, 90);
+  const auto g = BRDFGeometry::fromDegrees(20, 70, 90);
   const auto diffuse = [&](double n, double k) {
     return BRDFTorranceSparrow(n, k, 0.3).at(g).getScalar() -
            BRDFTorranceSparrow(n, k, 0.3, specular_only).at(g).getScalar();
@@ -455,7 +451,7 @@ TEST(BRDFTorranceSparrowIdentity, TheRemainderIsThatOfTheDHRChapter) {
     EXPECT_NEAR(mean, 1 - dhr.getAverage(sigma), 1e-9)
         << sigma;  // two quadratures of one polygon
     for (double theta = 0; theta < 89.9; theta += 0.37) {
-      const auto g = CDBRDFGeometry::fromDegrees(20, theta, 90);
+      const auto g = BRDFGeometry::fromDegrees(20, theta, 90);
       const double d = model.at(g).getScalar() -
                        BRDFTorranceSparrow(1.5, 0, sigma, specular_only).at(g).getScalar();
       // the same polygon; a sum with the specular term rounds
@@ -472,12 +468,12 @@ TEST(BRDFTorranceSparrowIdentity, TheRemainderIsThatOfTheDHRChapter) {
 
 // Energy: with the reciprocal term at most everything comes back, at every angle and roughness.
 TEST(BRDFTorranceSparrowInvariant, EnergyIsConservedWithTheReciprocalTerm) {
-  const auto grid = CDSpectralGrid::make({450.0, 550.0});
+  const auto grid = SpectralGrid::make({450.0, 550.0});
   const auto n = spectrum(grid, {1, 0.405}),
              k = spectrum(grid, {1e6, 2.95});  // a mirror, and copper
-  const auto check = [&](double sigma, CDShadowing shadowing) {
+  const auto check = [&](double sigma, Shadowing shadowing) {
     const BRDFTorranceSparrow model(n, k, CDSpectralVector<double>(grid, sigma),
-                                    with(shadowing, CDDiffuseTerm::reciprocal));
+                                    with(shadowing, DiffuseTerm::reciprocal));
     for (const double theta : {0.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
       const auto dhr = model.getDHR(theta * degree);
       EXPECT_NEAR(dhr[0], 1, 2e-5)
@@ -486,10 +482,9 @@ TEST(BRDFTorranceSparrowInvariant, EnergyIsConservedWithTheReciprocalTerm) {
       EXPECT_GT(dhr[1], 0.5);
     }
   };
-  for (const double sigma : {0.01, 0.05, 0.1, 0.2, 0.4, 0.6})
-    check(sigma, CDShadowing::vGroove);
-  for (const double sigma : {0.05, 0.5}) check(sigma, CDShadowing::smith);
-  check(0.3, CDShadowing::smithCorrelated);
+  for (const double sigma : {0.01, 0.05, 0.1, 0.2, 0.4, 0.6}) check(sigma, Shadowing::vGroove);
+  for (const double sigma : {0.05, 0.5}) check(sigma, Shadowing::smith);
+  check(0.3, Shadowing::smithCorrelated);
 }
 
 TEST(BRDFTorranceSparrowInvariant, TheThesisTermCreatesEnergy) {
@@ -500,9 +495,9 @@ TEST(BRDFTorranceSparrowInvariant, TheThesisTermCreatesEnergy) {
 // The quadrature over slopes against the plain product rule of the base class, which shares
 // nothing with it.
 TEST(BRDFTorranceSparrowIdentity, DHRAgreesWithThePlainIntegration) {
-  const auto grid = CDSpectralGrid::make(four_bands);
+  const auto grid = SpectralGrid::make(four_bands);
   for (const auto options :
-       {specular_only, as_thesis, reciprocal, with(CDShadowing::smith, CDDiffuseTerm::none)}) {
+       {specular_only, as_thesis, reciprocal, with(Shadowing::smith, DiffuseTerm::none)}) {
     const BRDFTorranceSparrow model(spectrum(grid, {0.4, 1.5, 0.2, 1.3}),
                                     spectrum(grid, {2.9, 0, 3.4, 7.5}),
                                     CDSpectralVector<double>(grid, 0.4), options);
@@ -520,16 +515,16 @@ TEST(BRDFTorranceSparrowIdentity, DHRAgreesWithThePlainIntegration) {
 TEST(BRDFTorranceSparrowIdentity, DHROfAMirrorAgreesWithTheDHRChapter) {
   for (const double sigma : {0.001, 0.01, 0.05, 0.2, 0.4, 0.6, 1.0})
     for (const double theta : {0.0, 10.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9}) {
-      const auto dhr = [&](CDShadowing s) {
-        const BRDFTorranceSparrow mirror(1, 1e10, sigma, with(s, CDDiffuseTerm::none));
+      const auto dhr = [&](Shadowing s) {
+        const BRDFTorranceSparrow mirror(1, 1e10, sigma, with(s, DiffuseTerm::none));
         return mirror.getDHR(theta * degree)[0];
       };
-      const double groove = dhr(CDShadowing::vGroove);
+      const double groove = dhr(Shadowing::vGroove);
       EXPECT_NEAR(groove, DHRTorranceSparrow::integrate(theta * degree, sigma), 1e-8)
           << sigma << ' ' << theta;
       if (sigma > 0.1) {
-        EXPECT_NEAR(dhr(CDShadowing::smith),
-                    DHRTorranceSparrow::integrate(theta * degree, sigma, CDShadowing::smith),
+        EXPECT_NEAR(dhr(Shadowing::smith),
+                    DHRTorranceSparrow::integrate(theta * degree, sigma, Shadowing::smith),
                     1e-6)
             << sigma << ' ' << theta;
       }
@@ -564,14 +559,14 @@ TEST(BRDFTorranceSparrowIdentity, DHRKnowsWhereTotalReflectionBegins) {
 }
 
 TEST(BRDFTorranceSparrowIdentity, ScoreIsThatOfTheBaseClass) {
-  const auto grid = CDSpectralGrid::make(four_bands);
+  const auto grid = SpectralGrid::make(four_bands);
   const auto model = varied(grid, as_thesis);
   for (const double phi : {0.0, 1.0, pi}) {
-    const auto g = CDBRDFGeometry::fromAngles(0.5, 0.7, phi);
+    const auto g = BRDFGeometry::fromAngles(0.5, 0.7, phi);
     EXPECT_NEAR(model.getScore(g), model.CDBRDFModel::getScore(g),
                 1e-14 * (1 + model.getScore(g)));
   }
-  EXPECT_EQ(model.getScore(CDBRDFGeometry::fromAngles(2, 0.7, 0)), 0);
+  EXPECT_EQ(model.getScore(BRDFGeometry::fromAngles(2, 0.7, 0)), 0);
 }
 
 // ---- the importance sampler
@@ -587,7 +582,7 @@ TEST(BRDFTorranceSparrowInvariant, SamplesFollowTheirDensity) {
     EXPECT_NEAR(drawn.rejected + drawn.density_integral, 1, 5 * std::sqrt(0.25 / 200000) + 1e-3)
         << zenith;
   }
-  const auto grid = CDSpectralGrid::make(four_bands);
+  const auto grid = SpectralGrid::make(four_bands);
   const auto mixed = varied(grid, as_thesis);
   EXPECT_GT(draw(mixed, mixed, 0.8).p_value, false_alarm);
 }
@@ -599,14 +594,14 @@ TEST(BRDFTorranceSparrowInvariant, NegativeControlAnotherDensityIsNoticed) {
 }
 
 TEST(BRDFTorranceSparrowInvariant, SampleAndDensityTellTheSameNumber) {
-  const auto grid = CDSpectralGrid::make(four_bands);
+  const auto grid = SpectralGrid::make(four_bands);
   const auto model = varied(grid, reciprocal);
   const CDVector given = CDVector::fromAngles(1.0, 2.0);
-  CDRandom random(3);
+  Random random(3);
   int accepted = 0;
   for (int i = 0; i < 1000; ++i) {
     const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
-    const CDBRDFSample s = model.sample(given, u1, u2, u3);
+    const BRDFSample s = model.sample(given, u1, u2, u3);
     if (s.rejected()) continue;
     ++accepted;
     EXPECT_NEAR(s.direction.getLength(), 1, 1e-14);
@@ -621,16 +616,15 @@ TEST(BRDFTorranceSparrowInvariant, MonteCarloOfTheSamplerGivesTheDHR) {
   const BRDFTorranceSparrow model(0.405, 2.95, 0.2, reciprocal);
   for (const double zenith : {0.2, 1.0}) {
     const CDVector given = CDVector::fromAngles(zenith, 0.0);
-    CDRandom random(5);
+    Random random(5);
     double sum = 0, squares = 0;
     constexpr int draws = 200000;
     for (int i = 0; i < draws; ++i) {
       const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
-      const CDBRDFSample s = model.sample(given, u1, u2, u3);
+      const BRDFSample s = model.sample(given, u1, u2, u3);
       if (s.rejected()) continue;
-      const double x =
-          model.at(CDBRDFGeometry::fromDirections(given, s.direction)).getScalar() *
-          s.direction.z / s.density_per_sr;
+      const double x = model.at(BRDFGeometry::fromDirections(given, s.direction)).getScalar() *
+                       s.direction.z / s.density_per_sr;
       sum += x, squares += x * x;
     }
     const double mean = sum / draws, error = std::sqrt((squares / draws - mean * mean) / draws);
@@ -641,25 +635,25 @@ TEST(BRDFTorranceSparrowInvariant, MonteCarloOfTheSamplerGivesTheDHR) {
 
 TEST(BRDFTorranceSparrowIdentity, ImpossibleSurfacesAreRefused) {
   for (const double bad : {-1.0, not_a_number, std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(BRDFTorranceSparrow(bad, 1, 0.2), CDMathError);
-    EXPECT_THROW(BRDFTorranceSparrow(1, bad, 0.2), CDMathError);
-    EXPECT_THROW(BRDFTorranceSparrow(1, 1, bad), CDMathError);
+    EXPECT_THROW(BRDFTorranceSparrow(bad, 1, 0.2), MathError);
+    EXPECT_THROW(BRDFTorranceSparrow(1, bad, 0.2), MathError);
+    EXPECT_THROW(BRDFTorranceSparrow(1, 1, bad), MathError);
   }
-  EXPECT_THROW(BRDFTorranceSparrow(0, 0, 0.2), CDMathError);
-  EXPECT_THROW(BRDFTorranceSparrow(1, 1, 0), CDMathError);
-  const auto a = CDSpectralGrid::make(four_bands), b = CDSpectralGrid::make({450.0, 550.0});
+  EXPECT_THROW(BRDFTorranceSparrow(0, 0, 0.2), MathError);
+  EXPECT_THROW(BRDFTorranceSparrow(1, 1, 0), MathError);
+  const auto a = SpectralGrid::make(four_bands), b = SpectralGrid::make({450.0, 550.0});
   EXPECT_THROW(
       BRDFTorranceSparrow(CDSpectralVector<double>(a, 1.0), CDSpectralVector<double>(b, 1.0),
                           CDSpectralVector<double>(a, 0.2)),
-      CDMathError);
+      MathError);
   const auto model = varied(a, as_thesis);
   CDSpectralVector<CDStokesVector> other(b), mine(a);
   CDSpectralVector<CDMuellerMatrix> out(b);
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 180);
-  EXPECT_THROW(model.scatter(g, 1, other, mine), CDMathError);
-  EXPECT_THROW(model.scatter(g, 1, mine, other), CDMathError);
-  EXPECT_THROW(model.evaluate(g, out), CDMathError);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 180);
+  EXPECT_THROW(model.scatter(g, 1, other, mine), MathError);
+  EXPECT_THROW(model.scatter(g, 1, mine, other), MathError);
+  EXPECT_THROW(model.evaluate(g, out), MathError);
   for (const double zenith : {-0.1, pi / 2, not_a_number})
-    EXPECT_THROW(model.getDHR(zenith), CDMathError);
-  EXPECT_THROW(model.sample(CDVector{0, 0, -1}, 0.5, 0.5, 0.5), CDMathError);
+    EXPECT_THROW(model.getDHR(zenith), MathError);
+  EXPECT_THROW(model.sample(CDVector{0, 0, -1}, 0.5, 0.5, 0.5), MathError);
 }

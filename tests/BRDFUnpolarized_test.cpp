@@ -1,26 +1,26 @@
 // A model that gives f00 alone (nw/matter/BRDFUnpolarized.nw): its matrix is f00 times the identity in every band, also
 // beyond the block of 64 in which the bands are worked through.
-#include "matter/BRDFUnpolarized.hpp"
+#include "malus/surface/BRDFUnpolarized.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
-CDSpectralGridPtr gridOf(std::size_t bands) {
+SpectralGridPtr gridOf(std::size_t bands) {
   std::vector<CDSpectralLocation> places;
   for (std::size_t i = 0; i < bands; ++i) places.emplace_back(400.0 + static_cast<double>(i));
-  return CDSpectralGrid::make(places);
+  return SpectralGrid::make(places);
 }
 
-double expected(const CDBRDFGeometry& geometry, std::size_t band) {
+double expected(const BRDFGeometry& geometry, std::size_t band) {
   return (1 + 0.01 * static_cast<double>(band)) * (geometry.cos_i + 2 * geometry.cos_r);
 }
 
@@ -28,16 +28,16 @@ double expected(const CDBRDFGeometry& geometry, std::size_t band) {
 struct Numbered final : BRDFUnpolarized {
   explicit Numbered(std::size_t bands) : BRDFUnpolarized(gridOf(bands)) {}
   std::string_view name() const override { return "numbered"; }
-  void fill(const CDBRDFGeometry& geometry, std::size_t begin, std::size_t count,
+  void fill(const BRDFGeometry& geometry, std::size_t begin, std::size_t count,
             double* f00) const override {
     for (std::size_t j = 0; j < count; ++j) f00[j] = expected(geometry, begin + j);
   }
 };
 
-const CDBRDFGeometry geometry = CDBRDFGeometry::fromDegrees(30, 50, 170);
+const BRDFGeometry geometry = BRDFGeometry::fromDegrees(30, 50, 170);
 const std::vector<std::size_t> sizes{1, 63, 64, 65, 128, 150};
 
-CDSpectralVector<CDStokesVector> mixedLight(const CDSpectralGridPtr& grid) {
+CDSpectralVector<CDStokesVector> mixedLight(const SpectralGridPtr& grid) {
   CDSpectralVector<CDStokesVector> light(grid);
   for (std::size_t band = 0; band < grid->size(); ++band)
     light[band] = band % 3 ? CDStokesVector(2.0) : CDStokesVector(1.0, 0.3, -0.2, 0.1);
@@ -97,7 +97,7 @@ TEST(BRDFUnpolarizedIdentity, TheScoreIsTheMeanTimesTheCosine) {
 TEST(BRDFUnpolarizedIdentity, NothingIsScatteredBelowTheHorizon) {
   const Numbered model(70);
   for (const auto& [i, r] : {std::pair{100.0, 20.0}, std::pair{20.0, 100.0}}) {
-    const CDBRDFGeometry below = CDBRDFGeometry::fromDegrees(i, r, 0);
+    const BRDFGeometry below = BRDFGeometry::fromDegrees(i, r, 0);
     for (std::size_t band = 0; band < 70; ++band)
       EXPECT_EQ(model.getBRDF(below).at(band).getScalar(), 0);
     EXPECT_EQ(model.getScore(below), 0);
@@ -110,10 +110,10 @@ TEST(BRDFUnpolarizedIdentity, NothingIsScatteredBelowTheHorizon) {
 
 TEST(BRDFUnpolarizedIdentity, AnotherGridIsRefused) {
   const Numbered model(3);
-  const CDSpectralGridPtr four = gridOf(4);
+  const SpectralGridPtr four = gridOf(4);
   CDSpectralVector<CDMuellerMatrix> matrices(four);
-  EXPECT_THROW(model.evaluate(geometry, matrices), CDGridError);
+  EXPECT_THROW(model.evaluate(geometry, matrices), GridError);
   CDSpectralVector<CDStokesVector> sum(model.grid()), other(four);
-  EXPECT_THROW(model.scatter(geometry, 1, mixedLight(four), sum), CDGridError);
-  EXPECT_THROW(model.scatter(geometry, 1, mixedLight(model.grid()), other), CDGridError);
+  EXPECT_THROW(model.scatter(geometry, 1, mixedLight(four), sum), GridError);
+  EXPECT_THROW(model.scatter(geometry, 1, mixedLight(model.grid()), other), GridError);
 }

@@ -1,5 +1,5 @@
 // A coordinate with its unit (nw/light/CDSpectralPoint.nw).
-#include "light/CDSpectralPoint.hpp"
+#include "malus/light/CDSpectralPoint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(CDSpectralPointInvariant, EveryPointIsPositiveAndFinite) {
   const double infinite = std::numeric_limits<double>::infinity();
   for (const auto units : {nanometre, micrometre, perCentimetre, electronVolt, hertz}) {
     for (const double bad : {0.0, -1.0, infinite, -infinite, std::nan("")})
-      EXPECT_THROW(CDSpectralPoint(bad, units), CDMathError) << bad << " " << symbolOf(units);
+      EXPECT_THROW(CDSpectralPoint(bad, units), MathError) << bad << " " << symbolOf(units);
     EXPECT_NO_THROW(CDSpectralPoint(1, units));
   }
 }

@@ -1,5 +1,5 @@
 // Units of the spectral axis and densities over it (nw/light/CDSpectralUnits.nw).
-#include "light/CDSpectralUnits.hpp"
+#include "malus/light/CDSpectralUnits.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -109,9 +109,9 @@ TEST(CDSpectralUnitsIdentity, ForbiddenCoordinates) {
         if (bad > 0 && std::isfinite(bad) && (from == nanometre || from == micrometre) &&
             (to == nanometre || to == micrometre))
           continue;
-        EXPECT_THROW(convertSpectral(bad, from, to), CDMathError)
+        EXPECT_THROW(convertSpectral(bad, from, to), MathError)
             << bad << symbolOf(from) << symbolOf(to);
-        EXPECT_THROW(convertSpectralDensity(bad, 1, from, to), CDMathError);
+        EXPECT_THROW(convertSpectralDensity(bad, 1, from, to), MathError);
       }
 }
 
@@ -131,12 +131,12 @@ TEST(CDSpectralUnitsIdentity, AWrongNameIsToldWithItsPlace) {
   try {
     parseSpectralUnits("NM", {"copper.csv", 3, "units"});
     FAIL() << "NM was taken";
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(
         std::string(error.what()),
         "copper.csv:3: units = NM: is not a unit of the spectral axis; known are: nm, um, "
         "cm^-1, eV, Hz");
   }
   for (const char* bad : {"", "m", "EV", "hz", " nm", "nm "})
-    EXPECT_THROW(parseSpectralUnits(bad), CDInputError) << bad;
+    EXPECT_THROW(parseSpectralUnits(bad), InputError) << bad;
 }

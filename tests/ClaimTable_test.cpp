@@ -1,10 +1,10 @@
 // The table of claims and what it refuses (nw/program/ClaimTable.nw).
-#include "program/ClaimTable.hpp"
+#include "malus/thesis/ClaimTable.hpp"
 
 #include <gtest/gtest.h>
 
 #include "Scratch.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -15,8 +15,8 @@ std::string complaint(const std::string& rows) {
   put(scratch / "claims.csv",
       "item,claim,kind,source,verdict,repeats,fit,limit,sentence,quantity,criterion\n" + rows);
   try {
-    CDClaimTable::read(scratch.path);
-  } catch (const CDInputError& error) {
+    ClaimTable::read(scratch.path);
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
@@ -70,17 +70,17 @@ TEST(ClaimTableIdentity, NegativeControlAFitHasOneNumberOfUnknowns) {
 }
 
 TEST(ClaimTableIdentity, LimitsAreIntervals) {
-  CDClaimRow row;
+  ClaimRow row;
   const auto limit = [&](const char* words) { return row.limit = words, readLimit(row); };
   EXPECT_EQ(limit("<= 1.1").second, 1.1);
   EXPECT_EQ(limit(">= 3").first, 3);
   EXPECT_EQ(limit("10 .. 20"), std::pair(10.0, 20.0));
-  EXPECT_THROW(limit("about 3"), CDInputError);
-  EXPECT_THROW(limit(""), CDInputError);
+  EXPECT_THROW(limit("about 3"), InputError);
+  EXPECT_THROW(limit(""), InputError);
 }
 
 TEST(ClaimTableIdentity, TheCommittedTableIsReadAndWrittenUnchanged) {
   const Scratch scratch;
-  CDClaimTable::read("validation").save(scratch.path);
+  ClaimTable::read("validation").save(scratch.path);
   EXPECT_EQ(contents(scratch / "claims.csv"), contents("validation/claims.csv"));
 }

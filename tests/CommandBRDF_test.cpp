@@ -1,4 +1,4 @@
-// malus brdf from outside (nw/program/CommandBRDF.nw, Models.nw).
+// malus brdf from outside (nw/program/CommandBRDF.nw, ModelRegistry.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "Program.hpp"
-#include "light/CDTable.hpp"
-#include "matter/BRDFNEFDS.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "program/Models.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/surface/BRDFNEFDS.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/ModelRegistry.hpp"
 
 using namespace malus;
 
@@ -25,17 +25,17 @@ const std::string plate = copper + "--theta-i 30 --theta-r 40 --phi 180 ";
 /// The names in the order of the list, as messages give them.
 std::string knownModels() {
   std::string names;
-  for (const CDModelEntry& entry : modelEntries())
+  for (const ModelEntry& entry : modelEntries())
     names += (names.empty() ? "" : ", ") + entry.name;
   return names;
 }
 
-CDTable table(const std::string& text) {
+Table table(const std::string& text) {
   std::istringstream stream(text);
-  return CDTable::parse(stream, "answer");
+  return Table::parse(stream, "answer");
 }
 
-CDTable answer(const Scratch& scratch, const std::string& arguments) {
+Table answer(const Scratch& scratch, const std::string& arguments) {
   const Outcome outcome = malusIn(scratch.path, arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return table(outcome.out);
@@ -71,9 +71,9 @@ bool sameBits(double a, double b) {
 // .0085. Tolerance: half a unit of their last digit.
 TEST(CommandBRDFPublished, TheCopperPlateOfSection71) {
   const Scratch scratch;
-  const CDTable with = answer(scratch, plate + "--format csv");
-  const CDTable without = answer(scratch, plate + "--format csv --param diffuse=none");
-  const auto f = [](const CDTable& t, const char* element) { return t.number(0, element); };
+  const Table with = answer(scratch, plate + "--format csv");
+  const Table without = answer(scratch, plate + "--format csv --param diffuse=none");
+  const auto f = [](const Table& t, const char* element) { return t.number(0, element); };
   EXPECT_NEAR(f(without, "f00"), 1.17187, 5e-6);
   EXPECT_NEAR(f(without, "f11"), 1.17187, 5e-6);
   EXPECT_NEAR(f(without, "f01"), 0.040058, 5e-7);
@@ -88,7 +88,7 @@ TEST(CommandBRDFPublished, TheCopperPlateOfSection71) {
 
 TEST(CommandBRDFPublished, NegativeControlOneDegreeMoreMissesThem) {
   const Scratch scratch;
-  const CDTable off =
+  const Table off =
       answer(scratch,
              copper + "--theta-i 31 --theta-r 40 --phi 180 --format csv --param diffuse=none");
   EXPECT_GT(std::abs(off.number(0, "f00") - 1.17187), 5e-6);
@@ -109,11 +109,11 @@ TEST(CommandBRDFIdentity, TextShowsTheMatrixAndWhatUnpolarisedLightBecomes) {
 
 TEST(CommandBRDFInvariant, CsvAndJsonAndTheLibraryGiveTheSameBits) {
   const Scratch scratch;
-  const CDTable csv = answer(scratch, plate + "--format csv");
+  const Table csv = answer(scratch, plate + "--format csv");
   const auto json = nlohmann::json::parse(malusIn(scratch.path, plate + "--format json").out);
   const auto& matrix = json["geometries"][0]["mueller_per_sr"];
   const CDMuellerMatrix f =
-      BRDFTorranceSparrow(0.405, 2.950, 0.2).at(CDBRDFGeometry::fromDegrees(30, 40, 180));
+      BRDFTorranceSparrow(0.405, 2.950, 0.2).at(BRDFGeometry::fromDegrees(30, 40, 180));
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) {
       const double ours = csv.number(0, fmt::format("f{}{}", i, j));
@@ -134,7 +134,7 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
       malusIn(scratch.path, "brdf --model torrance-sparrow --geometries q.csv --out a.csv")
           .code,
       0);
-  const CDTable asked = table(question), answered = CDTable::read(scratch / "a.csv");
+  const Table asked = table(question), answered = Table::read(scratch / "a.csv");
   ASSERT_EQ(answered.rows(), asked.rows());
   ASSERT_EQ(answered.columns().size(), asked.columns().size() + 16);
   for (const std::string& column : asked.columns())
@@ -142,7 +142,7 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
   for (std::size_t row = 0; row < asked.rows(); row += 37) {
     const BRDFTorranceSparrow model(asked.number(row, "n"), asked.number(row, "k"),
                                     asked.number(row, "sigma"));
-    const CDMuellerMatrix f = model.at(CDBRDFGeometry::fromDegrees(
+    const CDMuellerMatrix f = model.at(BRDFGeometry::fromDegrees(
         asked.number(row, "theta_i_deg"), asked.number(row, "theta_r_deg"),
         asked.number(row, "phi_deg")));
     for (int k = 0; k < 16; ++k)
@@ -161,13 +161,13 @@ TEST(CommandBRDFInvariant, StandardOutputIsTheFileThatOutWrites) {
 
 TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
   const Scratch scratch;
-  const CDTable f = answer(scratch,
-                           "brdf --model lambertian --param reflectance=0.5 --param s=0.25 "
-                           "--theta-i 10 --theta-r 20 --phi 0 --format csv");
+  const Table f = answer(scratch,
+                         "brdf --model lambertian --param reflectance=0.5 --param s=0.25 "
+                         "--theta-i 10 --theta-r 20 --phi 0 --format csv");
   EXPECT_DOUBLE_EQ(f.number(0, "f00"), 0.5 / M_PI);
   EXPECT_DOUBLE_EQ(f.number(0, "f33"), 0.125 / M_PI);
   EXPECT_EQ(f.number(0, "f01"), 0);
-  const CDTable dhr =
+  const Table dhr =
       answer(scratch,
              "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i 60 --format csv");
   EXPECT_NEAR(dhr.number(0, "dhr"), 0.5, 1e-12);  // rounding of pi * (1/pi)
@@ -179,7 +179,7 @@ TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
   const Scratch scratch;
   const std::string model =
       "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i 50 ";
-  const CDTable samples = answer(scratch, model + "--sample 20000 --seed 7");
+  const Table samples = answer(scratch, model + "--sample 20000 --seed 7");
   const double draws = std::stod(samples.header("draws"));
   EXPECT_EQ(static_cast<double>(samples.rows()) + std::stod(samples.header("rejected")), draws);
   double sum = 0, squares = 0;
@@ -204,7 +204,7 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
   const Scratch scratch;
   const std::string list = malusIn(scratch.path, "brdf --list").out;
   ASSERT_GT(modelEntries().size(), 5u);
-  for (const CDModelEntry& model : modelEntries()) {
+  for (const ModelEntry& model : modelEntries()) {
     EXPECT_NE(list.find(model.name), std::string::npos);
     EXPECT_EQ(malusIn(scratch.path, "brdf --describe " + model.name).code, 0);
   }
@@ -246,9 +246,9 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
   put(scratch / "q.csv", question);
   const std::string copper_only =
       "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
-  const CDTable column = answer(scratch, copper_only + "--geometries q.csv");
+  const Table column = answer(scratch, copper_only + "--geometries q.csv");
   for (int i = 0; i < 5; ++i) {
-    const CDTable flag =
+    const Table flag =
         answer(scratch, copper_only +
                             "--theta-i 70 --theta-r 60 --phi 175 --format csv --param sigma=" +
                             sigmas[i] + " --param shadowing=" + words[i]);
@@ -262,7 +262,7 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
 TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
   const Scratch scratch;
   put(scratch / "q.csv", "theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n0,40,180\n");
-  const CDTable file = answer(scratch, copper + "--dhr --geometries q.csv");
+  const Table file = answer(scratch, copper + "--dhr --geometries q.csv");
   EXPECT_EQ(file.text("theta_r_deg"), (std::vector<std::string>{"40", "40"}));
   EXPECT_EQ(file.number(0, "dhr"),
             answer(scratch, copper + "--dhr --theta-i 30 --format csv").number(0, "dhr"));
@@ -276,20 +276,20 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   put(scratch / "nef.csv",
       "wavelength_nm,n,k,bias,sigma,rho_d\n500,1.5,0,0.03,0.2,0.05\n600,1.49,0,0.04,0.3,0."
       "07\n");
-  const auto lasers = CDSpectralGrid::make({500.0, 600.0});
+  const auto lasers = SpectralGrid::make({500.0, 600.0});
   const auto two = [&](double a, double b) {
     return CDSpectralVector<double>(lasers, std::vector<double>{a, b});
   };
   const BRDFNEFDS model({two(1.5, 1.49), two(0, 0), two(0.03, 0.04), two(0.2, 0.3),
                          two(0.05, 0.07), two(0, 0), 15, 40},
-                        {CDSpectralGrid::make({550.0}), 0.4}, 20 * std::numbers::pi / 180);
-  const CDMuellerMatrix f = model.getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 170))[0];
+                        {SpectralGrid::make({550.0}), 0.4}, 20 * std::numbers::pi / 180);
+  const CDMuellerMatrix f = model.getBRDF(BRDFGeometry::fromDegrees(30, 40, 170))[0];
   const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith=20 ";
   put(scratch / "q.csv", "file,theta_i_deg,theta_r_deg,phi_deg\nnef.csv,30,40,170\n");
   const std::string file = "--param file=nef.csv ";
   for (const std::string& way : {file + "--theta-i 30 --theta-r 40 --phi 170 --format csv",
                                  std::string("--geometries q.csv")}) {
-    const CDTable table = answer(scratch, nefds + way);
+    const Table table = answer(scratch, nefds + way);
     for (int k = 0; k < 16; ++k)
       EXPECT_TRUE(sameBits(table.number(0, fmt::format("f{}{}", k / 4, k % 4)), f.data()[k]));
   }
@@ -327,7 +327,7 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
       "brdf --model torrance-sparrow --param n=1.5 --param k=0 --param sigma=0.3 --param "
       "shadowing=smith --param diffuse=none ";  // reciprocal, as MERL's layout takes for granted
   const std::string geometry = "--theta-i 30 --theta-r 44 --phi 170 --format csv";
-  const CDTable truth = answer(scratch, glass + geometry);
+  const Table truth = answer(scratch, glass + geometry);
   for (const auto& [file, model] :
        {std::pair{"t.csv", "measured"}, {"t.pbsdf", "measured"}, {"t.binary", "merl"}}) {
     const Outcome written = malusIn(scratch.path, glass + "--steps 20 --table " + file);
@@ -342,7 +342,7 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
     EXPECT_NE(outcome.err.find(fmt::format("{}: ", file)), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(" not realisable; reflects up to 0."), std::string::npos)
         << outcome.err;
-    const CDTable back = table(outcome.out);
+    const Table back = table(outcome.out);
     const double f00 = truth.number(0, "f00");
     for (int k = 0; k < (merl ? 1 : 16); ++k) {
       const std::string element = fmt::format("f{}{}", k / 4, k % 4);

@@ -7,14 +7,14 @@
 #include <string>
 
 #include "Program.hpp"
-#include "light/CDTable.hpp"
+#include "malus/base/Table.hpp"
 
-using malus::CDTable;
+using malus::Table;
 
 namespace {
-CDTable tableOf(const std::string& text) {
+Table tableOf(const std::string& text) {
   std::istringstream stream(text);
-  return CDTable::parse(stream, "answer");
+  return Table::parse(stream, "answer");
 }
 
 /// Geometries about three mirror directions, in the plane of incidence.
@@ -39,7 +39,7 @@ TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
   const Outcome fit = malusIn(scratch.path, "fit --samples plate.csv --out fit.csv");
   ASSERT_EQ(fit.code, 0) << fit.err;
   EXPECT_EQ(fit.out, "");
-  const CDTable answer = CDTable::read(scratch / "fit.csv");
+  const Table answer = Table::read(scratch / "fit.csv");
   ASSERT_EQ(answer.rows(), 1u);
   EXPECT_NEAR(answer.number(0, "n"), 0.405, 1e-3);
   EXPECT_NEAR(answer.number(0, "k"), 2.950, 1e-3);
@@ -51,7 +51,7 @@ TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
   malusIn(scratch.path,
           "brdf --model torrance-sparrow --param n=0.45 --param k=2.95 --param sigma=0.21 "
           "--geometries angles.csv --out other.csv");
-  const CDTable other = tableOf(malusIn(scratch.path, "fit --samples other.csv").out);
+  const Table other = tableOf(malusIn(scratch.path, "fit --samples other.csv").out);
   EXPECT_GT(other.number(0, "n"), 0.42);
   EXPECT_GT(other.number(0, "sigma"), 0.205);
 }
@@ -66,7 +66,7 @@ TEST(CommandFitPublished, GlassByHandAndTwoWavelengths) {
   const Outcome fit = malusIn(
       scratch.path, "fit --samples glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
   ASSERT_EQ(fit.code, 0) << fit.err;
-  const CDTable answer = tableOf(fit.out);
+  const Table answer = tableOf(fit.out);
   ASSERT_EQ(answer.rows(), 2u);
   EXPECT_EQ(answer.cell(0, "wavelength_nm"), "500");
   EXPECT_NEAR(answer.number(0, "n"), 1.5, 1e-4);                  // six printed digits

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "Program.hpp"
-#include "light/CDTable.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 

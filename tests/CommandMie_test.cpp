@@ -9,18 +9,18 @@
 
 #include "ExtremeNumbers.hpp"
 #include "Program.hpp"
-#include "light/CDTable.hpp"
-#include "world/CDScatterer.hpp"
+#include "malus/air/Scatterer.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 
 namespace {
-CDTable tableOf(const std::string& text) {
+Table tableOf(const std::string& text) {
   std::istringstream stream(text);
-  return CDTable::parse(stream, "answer");
+  return Table::parse(stream, "answer");
 }
 
-CDTable answered(const Scratch& scratch, const std::string& question) {
+Table answered(const Scratch& scratch, const std::string& question) {
   const Outcome outcome = malusIn(scratch.path, question);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return tableOf(outcome.out);
@@ -33,7 +33,7 @@ const std::string garcia =
 // Bohren and Huffman 1983, appendix A; half a unit of the printed digit.
 TEST(CommandMiePublished, SampleOfBohrenAndHuffman) {
   const Scratch scratch;
-  const CDTable sphere =
+  const Table sphere =
       answered(scratch, "mie --n 1.55 --wavelength-nm 632.8 --radius-um 0.525");
   EXPECT_NEAR(sphere.number(0, "x_eff"), 5.213, 5e-4);
   EXPECT_NEAR(sphere.number(0, "Q_ext"), 3.10543, 5e-6);
@@ -42,16 +42,16 @@ TEST(CommandMiePublished, SampleOfBohrenAndHuffman) {
   EXPECT_NEAR(sphere.number(0, "asymmetry"), 0.63314, 5e-6);
   EXPECT_NEAR(sphere.number(0, "C_ext_um2"),
               sphere.number(0, "Q_ext") * std::numbers::pi * 0.525 * 0.525, 1e-12);
-  const CDTable other = answered(scratch, "mie --n 1.55 --wavelength-nm 632 --radius-um 0.525");
+  const Table other = answered(scratch, "mie --n 1.55 --wavelength-nm 632 --radius-um 0.525");
   EXPECT_GT(std::abs(other.number(0, "Q_ext") - 3.10543), 5e-6);  // negative control
 }
 
 // Evans and Stephens 1991, table 3: twelve terms, each rounded at the eighth decimal. Their F34 has the other sense
 // of V.
 TEST(CommandMiePublished, MatrixOfEvansAndStephens) {
-  const CDTable series = CDTable::read("validation/printed/evans1991-series.csv");
+  const Table series = Table::read("validation/printed/evans1991-series.csv");
   const Scratch scratch;
-  const CDTable ours = answered(scratch, garcia + "--matrix 10");
+  const Table ours = answered(scratch, garcia + "--matrix 10");
   ASSERT_EQ(ours.rows(), 19u);
   std::vector<double> p(series.rows());
   for (std::size_t row = 0; row < ours.rows(); ++row) {
@@ -79,12 +79,12 @@ TEST(CommandMieIdentity, GreekConstantsAreTheMatrix) {
   const std::string spheres =
       "mie --n 1.5 --k 0.02 --wavelength-nm 500 --median-radius-um 0.1 --deviation 1.6 ";
   ASSERT_EQ(malusIn(scratch.path, spheres + "--greek --out dust.csv").code, 0);
-  const CDTable file = CDTable::read(scratch / "dust.csv");
-  const CDScatterer read = CDScatterer::read(file);
-  const CDTable matrix = answered(scratch, spheres + "--matrix 15"),
-                row = answered(scratch, spheres);
+  const Table file = Table::read(scratch / "dust.csv");
+  const Scatterer read = Scatterer::read(file);
+  const Table matrix = answered(scratch, spheres + "--matrix 15"),
+              row = answered(scratch, spheres);
   for (std::size_t i = 0; i < matrix.rows(); ++i) {
-    const CDScatteringMatrix f =
+    const ScatteringMatrix f =
         read.matrix(std::cos(matrix.number(i, "angle_deg") * std::numbers::pi / 180));
     EXPECT_NEAR(f.a1, matrix.number(i, "F11"), 1e-12);
     EXPECT_NEAR(f.b1 / f.a1, matrix.number(i, "-F12/F11"), 1e-12);
@@ -104,7 +104,7 @@ TEST(CommandMieIdentity, GreekConstantsAreTheMatrix) {
 // A medium is another wavelength and another index; a size is a radius in units of the wavelength.
 TEST(CommandMieIdentity, TheWaysToAskAgree) {
   const Scratch scratch;
-  const CDTable
+  const Table
       air = answered(scratch, "mie --n 1.2 --k 0.01 --wavelength-nm 500 --radius-um 0.3"),
       water = answered(
           scratch,
@@ -129,13 +129,13 @@ TEST(CommandMieInvariant, TheSkyTakesTheAlbedoFromTheFile) {
           .code,
       0);
   const std::string albedo =
-      CDTable::read(scratch / "dust.csv").header("single_scattering_albedo");
+      Table::read(scratch / "dust.csv").header("single_scattering_albedo");
   const std::string ask =
       "sky --wavelength-nm 550 --mu0 0.6 --mu 0.4 --phi 90 --aerosol dust.csv --aerosol-tau "
       "0.3";
-  const CDTable from_file = answered(scratch, ask),
-                told = answered(scratch, ask + " --aerosol-albedo " + albedo),
-                other = answered(scratch, ask + " --aerosol-albedo 1");
+  const Table from_file = answered(scratch, ask),
+              told = answered(scratch, ask + " --aerosol-albedo " + albedo),
+              other = answered(scratch, ask + " --aerosol-albedo 1");
   for (const char* component : {"I", "Q", "U", "V"})
     EXPECT_EQ(from_file.cell(0, component), told.cell(0, component));
   EXPECT_GT(other.number(0, "I"), 1.01 * from_file.number(0, "I"));  // control

@@ -8,14 +8,14 @@
 #include <sstream>
 
 #include "Program.hpp"
-#include "imaging/CDImage.hpp"
+#include "malus/files/Cube.hpp"
 
 using namespace malus;
 
 namespace {
 void cubeIn(const std::filesystem::path& directory) {
-  const auto bands = CDSpectralGrid::make({450, 550, 650});
-  CDCubeWriter writer(directory / "x.img", stokesHeader(4, 3, *bands, "W m^-2 sr^-1 nm^-1"));
+  const auto bands = SpectralGrid::make({450, 550, 650});
+  CubeWriter writer(directory / "x.img", stokesHeader(4, 3, *bands, "W m^-2 sr^-1 nm^-1"));
   std::vector<float> numbers;
   for (int i = 0; i < 4 * 3 * 3; ++i)
     for (const float v : {5.f, 3.f, -0.f, 4.f}) numbers.push_back(v);
@@ -29,7 +29,7 @@ TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
   cubeIn(scratch.path);
   const Outcome outcome = malusIn(scratch.path, "products x.img");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube made = readCube(scratch / "x.products.img");
+  const Cube made = readCube(scratch / "x.products.img");
   EXPECT_EQ(made.header.channels[4], "DoP 550");
   EXPECT_FLOAT_EQ(made.at(1, 1, 0), 1.0f);
   EXPECT_FLOAT_EQ(made.at(1, 1, 1), 0.6f);
@@ -43,11 +43,11 @@ TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
 
 TEST(CommandProductsIdentity, BlackPixelsHaveNoProducts) {
   const Scratch scratch;
-  CDCubeWriter writer(scratch / "y.img", stokesHeader(3, 1, *CDSpectralGrid::make({450}), "1"));
+  CubeWriter writer(scratch / "y.img", stokesHeader(3, 1, *SpectralGrid::make({450}), "1"));
   writer.write({0, 0, 3, 1}, std::vector<float>{0, 0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 0});
   writer.finish();
   ASSERT_EQ(malusIn(scratch.path, "products y.img").code, 0);
-  const CDCube made = readCube(scratch / "y.products.img");
+  const Cube made = readCube(scratch / "y.products.img");
   for (std::size_t c = 0; c < 4; ++c) EXPECT_TRUE(std::isnan(made.at(0, 0, c))) << c;
   EXPECT_EQ(made.at(1, 0, 1), 0);  // lit and unpolarised: a degree of zero, and no line
   EXPECT_TRUE(std::isnan(made.at(1, 0, 3)));
@@ -58,25 +58,25 @@ TEST(CommandProductsIdentity, BlackPixelsHaveNoProducts) {
 
 TEST(CommandProductsIdentity, WhatDependsOnAnAbsentComponentIsAbsent) {
   const Scratch scratch;
-  const auto bands = CDSpectralGrid::bands(
-      {CDSpectralLocation(650.0), CDSpectralLocation(450.0)}, {"red", "blue"});
-  CDCubeHeader header = bandHeader(1, 1, *bands, {"S0", "S1", "S2"}, "1");
-  header.interleave = CDInterleave::bil;
-  CDCubeWriter writer(scratch / "y.img", header);
+  const auto bands = SpectralGrid::bands({CDSpectralLocation(650.0), CDSpectralLocation(450.0)},
+                                         {"red", "blue"});
+  CubeHeader header = bandHeader(1, 1, *bands, {"S0", "S1", "S2"}, "1");
+  header.interleave = Interleave::bil;
+  CubeWriter writer(scratch / "y.img", header);
   writer.write({0, 0, 1, 1}, std::vector<float>{5, 3, 0, 5, 0, 4});
   writer.finish();
   ASSERT_EQ(malusIn(scratch.path, "products y.img").code, 0);
-  const CDCube made = readCube(scratch / "y.products.img");
+  const Cube made = readCube(scratch / "y.products.img");
   EXPECT_EQ(made.header.channels,
             (std::vector<std::string>{"DoLP red", "AoLP red", "DoLP blue", "AoLP blue"}));
   EXPECT_EQ(made.header.wavelength_nm, (std::vector<double>{650, 650, 450, 450}));
-  EXPECT_EQ(made.header.interleave, CDInterleave::bil);
+  EXPECT_EQ(made.header.interleave, Interleave::bil);
   EXPECT_EQ(made.data, (std::vector<float>{0.6f, 0, 0.8f, 45}));
   EXPECT_TRUE(std::filesystem::exists(scratch / "y.blue.AoLP.png"));
   EXPECT_FALSE(std::filesystem::exists(scratch / "y.blue.S3.png"));
   ASSERT_EQ(malusIn(scratch.path, "products y.img --interleave bsq").code, 0);
-  const CDCube again = readCube(scratch / "y.products.img");
-  EXPECT_EQ(again.header.interleave, CDInterleave::bsq);
+  const Cube again = readCube(scratch / "y.products.img");
+  EXPECT_EQ(again.header.interleave, Interleave::bsq);
   EXPECT_EQ(again.data, made.data);
 }
 
@@ -96,8 +96,8 @@ TEST(CommandProductsIdentity, BandsWithoutAHarmlessNameGetTheirNumber) {
 
 TEST(CommandProductsIdentity, InfoCountsWhatIsNoNumber) {
   const Scratch scratch;
-  const auto bands = CDSpectralGrid::make({450});
-  CDCubeWriter writer(scratch / "y.img", stokesHeader(2, 1, *bands, "W m^-2 sr^-1 nm^-1"));
+  const auto bands = SpectralGrid::make({450});
+  CubeWriter writer(scratch / "y.img", stokesHeader(2, 1, *bands, "W m^-2 sr^-1 nm^-1"));
   const float none = std::numeric_limits<float>::quiet_NaN();
   writer.write({0, 0, 2, 1}, std::vector<float>{5, none, none, 4, 7, 3, none, 4});
   writer.finish();

@@ -1,4 +1,4 @@
-// malus render from outside (nw/program/CommandRender.nw), and what it says of bad scenes (nw/program/Scene.nw,
+// malus render from outside (nw/program/CommandRender.nw), and what it says of bad scenes (nw/program/SceneReader.nw,
 // SceneSchema.nw, SceneMaterials.nw).
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "Program.hpp"
-#include "imaging/CDImage.hpp"
-#include "light/CDError.hpp"
-#include "program/Render.hpp"
-#include "program/SceneSchema.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/files/Cube.hpp"
+#include "malus/files/SceneSchema.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -98,8 +98,8 @@ TEST(CommandRenderInvariant, PartsAreTheVeryPixelsOfTheWhole) {
   const Workplace place(smallScene());
   ASSERT_EQ(place.render("--out a").code, 0);
   ASSERT_EQ(place.render("--out a --tile 5,3,29,20").code, 0);
-  const CDCube whole = readCube(place.scratch / "a/s.img"),
-               part = readCube(place.scratch / "a/s.5-3-29-20.img");
+  const Cube whole = readCube(place.scratch / "a/s.img"),
+             part = readCube(place.scratch / "a/s.5-3-29-20.img");
   ASSERT_EQ(part.header.width, 24u);
   ASSERT_EQ(part.header.height, 17u);
   for (std::size_t y = 0; y < 17; ++y)
@@ -111,8 +111,8 @@ TEST(CommandRenderInvariant, PartsAreTheVeryPixelsOfTheWhole) {
 TEST(CommandRenderInvariant, InMemoryAndOnDiskAreTheSamePicture) {
   const Workplace place(smallScene());
   ASSERT_EQ(place.render("--out a").code, 0);
-  const CDCube cube = readCube(place.scratch / "a/s.img");
-  const CDFrame frame = renderScene(readScene(place.scratch / "s.json"));
+  const Cube cube = readCube(place.scratch / "a/s.img");
+  const RenderedImage frame = renderScene(readScene(place.scratch / "s.json"));
   for (std::size_t y = 0; y < frame.height; ++y)
     for (std::size_t x = 0; x < frame.width; ++x)
       for (std::size_t c = 0; c < 4; ++c)
@@ -314,7 +314,7 @@ TEST(SceneIdentity, EveryBadSceneIsAnsweredByOneLine) {
     std::string answer = "none";
     try {
       readScene(place.scratch / "s.json");
-    } catch (const CDInputError& error) {
+    } catch (const InputError& error) {
       answer = error.what();
     }
     EXPECT_EQ(std::count(answer.begin(), answer.end(), '\n'), 0) << answer;
@@ -462,19 +462,19 @@ json fourCameras() {
 const json mosaic = json::parse(R"([[{"polarizer_deg": 90}, {"polarizer_deg": 45}],
                                     [{"polarizer_deg": 135}, {"polarizer_deg": 0}]])");
 
-double farthest(const CDCube& a, const CDCube& b) {
+double farthest(const Cube& a, const Cube& b) {
   double most = a.data.size() == b.data.size() ? 0 : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min(a.data.size(), b.data.size()); ++i)
     most = std::max(most, std::abs(double(a.data[i]) - double(b.data[i])));
   return most;
 }
-CDCube withoutS3(const CDCube& cube) {
-  CDCube made{cube.header, {}};
+Cube withoutS3(const Cube& cube) {
+  Cube made{cube.header, {}};
   for (std::size_t i = 0; i < cube.data.size(); ++i)
     if (i % 4 < 3) made.data.push_back(cube.data[i]);
   return made;
 }
-double brightest(const CDCube& cube) {
+double brightest(const Cube& cube) {
   return *std::max_element(cube.data.begin(), cube.data.end());
 }
 // Numbers are rounded to float three times on the way, and the condition numbers here are below 5.
@@ -488,9 +488,9 @@ TEST(PolarimeterIdentity, FourIdealCamerasRecoverTheRenderedStokesVectors) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"),
-               back = readCube(place.scratch / "a/s.recovered.img");
-  const CDCube readings = readCube(place.scratch / "a/s.readings.img");
+  const Cube light = readCube(place.scratch / "a/s.img"),
+             back = readCube(place.scratch / "a/s.recovered.img");
+  const Cube readings = readCube(place.scratch / "a/s.readings.img");
   EXPECT_EQ(readings.header.channels,
             (std::vector<std::string>{"P0 500", "P45 500", "P90 500", "right 500", "P0 600",
                                       "P45 600", "P90 600", "right 600"}));
@@ -519,8 +519,8 @@ TEST(PolarimeterIdentity, NegativeControlATurnedPolarizerIsNoticed) {
   const Workplace other(scene);
   ASSERT_EQ(other.render("--out a").code, 0);
   EXPECT_EQ(place.file("a/s.img"), other.file("a/s.img"));
-  const CDCube a = readCube(place.scratch / "a/s.readings.img"),
-               b = readCube(other.scratch / "a/s.readings.img");
+  const Cube a = readCube(place.scratch / "a/s.readings.img"),
+             b = readCube(other.scratch / "a/s.readings.img");
   EXPECT_GT(farthest(a, b), 10 * float_rounding * brightest(a));
 }
 
@@ -533,8 +533,8 @@ TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"),
-               back = readCube(place.scratch / "a/s.recovered.img");
+  const Cube light = readCube(place.scratch / "a/s.img"),
+             back = readCube(place.scratch / "a/s.recovered.img");
   // over 1e-4 degrees the copper's lobe changes by 2e-6 / sigma of itself
   const double even = 1e-5 * brightest(light);
   EXPECT_LT(farthest(withoutS3(light), back), even);
@@ -548,7 +548,7 @@ TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
   scene["sensor"]["field_of_view_deg"] = 36.87;
   const Workplace edges(scene);
   ASSERT_EQ(edges.render("--out a").code, 0);
-  const CDCube seen = readCube(edges.scratch / "a/s.img");
+  const Cube seen = readCube(edges.scratch / "a/s.img");
   EXPECT_GT(farthest(withoutS3(seen), readCube(edges.scratch / "a/s.recovered.img")),
             0.1 * brightest(seen));
 }
@@ -569,10 +569,10 @@ TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
       linearPolarizer(0), linearPolarizer(std::numbers::pi / 4),
       linearPolarizer(std::numbers::pi / 2), circularPolarizer(1)};
   for (std::size_t i = 0; i < 4; ++i) {
-    CDCubeHeader header;
+    CubeHeader header;
     header.width = width, header.height = height;
     for (int j = 0; j < 16; ++j) header.channels.push_back(std::to_string(j));
-    CDCubeWriter writer(place.scratch / files[i], header);
+    CubeWriter writer(place.scratch / files[i], header);
     std::vector<float> numbers;
     for (std::size_t pixel = 0; pixel < width * height; ++pixel)
       numbers.insert(numbers.end(), filters[i].data(), filters[i].data() + 16);
@@ -581,8 +581,8 @@ TEST(PolarimeterIdentity, ACalibrationFromAFileIsWhatTheSameMatricesAre) {
   }
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube a = readCube(ideal.scratch / "a/s.readings.img"),
-               b = readCube(place.scratch / "a/s.readings.img");
+  const Cube a = readCube(ideal.scratch / "a/s.readings.img"),
+             b = readCube(place.scratch / "a/s.readings.img");
   EXPECT_LT(farthest(a, b), float_rounding * brightest(a));
   EXPECT_LT(farthest(readCube(place.scratch / "a/s.img"),
                      readCube(place.scratch / "a/s.recovered.img")),
@@ -610,8 +610,8 @@ TEST(PolarimeterInvariant, NoiseHasTheMeanAndTheVarianceOfItsElectrons) {
   const Workplace noisy(scene);
   ASSERT_EQ(noisy.render("--out a").code, 0);
   EXPECT_EQ(clean.file("a/s.img"), noisy.file("a/s.img"));
-  const CDCube mean = readCube(clean.scratch / "a/s.readings.img"),
-               drawn = readCube(noisy.scratch / "a/s.readings.img");
+  const Cube mean = readCube(clean.scratch / "a/s.readings.img"),
+             drawn = readCube(noisy.scratch / "a/s.readings.img");
   double sum = 0, squares = 0;
   const auto n = double(mean.data.size());
   for (std::size_t i = 0; i < mean.data.size(); ++i) {
@@ -666,8 +666,8 @@ TEST(PolarimeterIdentity, AFilterMayDependOnTheBand) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube light = readCube(place.scratch / "a/s.img"),
-               readings = readCube(place.scratch / "a/s.readings.img");
+  const Cube light = readCube(place.scratch / "a/s.img"),
+             readings = readCube(place.scratch / "a/s.readings.img");
   const std::array<double, 4> passes{0.5, 1, 0.6, 0.5};
   for (std::size_t pixel = 0; pixel < 40 * 33; ++pixel)
     for (std::size_t i = 0; i < 4; ++i)
@@ -686,7 +686,7 @@ TEST(SceneIdentity, SobolAndTheSkysShareAreChosenInTheScene) {
   EXPECT_FALSE(option("sobol", false).sobol);
   EXPECT_TRUE(option("mis", true).mis);
   EXPECT_FALSE(option("mis", false).mis);
-  EXPECT_EQ(option("mis", true).sampling, CDSampling::importance);
+  EXPECT_EQ(option("mis", true).sampling, Sampling::importance);
 }
 
 TEST(SceneIdentity, AllScenesThatShipWithMalusAreGood) {
@@ -701,9 +701,9 @@ TEST(SceneIdentity, AllScenesThatShipWithMalusAreGood) {
 }
 
 TEST(SceneIdentity, ASunWithATimeMovesWithTheFrames) {
-  const CDScene day = readScene(scenes + "rochester-day.json");
+  const Scene day = readScene(scenes + "rochester-day.json");
   ASSERT_TRUE(day.move_sun);
-  CDWorld moved = day.world;
+  World moved = day.world;
   day.move_sun(moved, 6 * 3600);
   EXPECT_LT(moved.sun->to_sun.getZenith(), day.world.sun->to_sun.getZenith());
   EXPECT_LT(moved.sun->to_sun.y, 0);  // in the south at one o'clock of summer time
@@ -732,7 +732,7 @@ namespace {
 std::string refusal(const json& scene, const std::filesystem::path& directory = ".") {
   try {
     readSceneText(scene.dump(1), "s.json", directory);
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "none";
@@ -752,7 +752,7 @@ TEST(SceneIdentity, BandsComeInAnyOrderAndUnderTheirNames) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube cube = readCube(place.scratch / "a/s.img");
+  const Cube cube = readCube(place.scratch / "a/s.img");
   EXPECT_EQ(cube.header.channels[0], "S0 red");
   EXPECT_EQ(cube.header.channels[8], "S0 pan");
   EXPECT_EQ(cube.header.channels[12], "S0 450");
@@ -772,7 +772,7 @@ TEST(SceneIdentity, BandsComeInAnyOrderAndUnderTheirNames) {
       {"center_nm": 550, "fwhm_nm": 100}, {"center_nm": 650}])");
   const Workplace sorted(scene);
   ASSERT_EQ(sorted.render("--out a").code, 0);
-  const CDCube other = readCube(sorted.scratch / "a/s.img");
+  const Cube other = readCube(sorted.scratch / "a/s.img");
   EXPECT_EQ(other.header.channels[8], "S0 550-2");
   for (std::size_t i = 0; i < cube.data.size(); i += 16)
     for (const auto& [a, b] : {std::pair{0, 12}, {4, 4}, {8, 8}, {12, 0}})
@@ -903,7 +903,7 @@ TEST(CommandRenderIdentity, EveryPixelIsFoundOnTheGroundFromTheRecordAlone) {
     for (const char* frame : {"0000", "0001"}) {
       const std::string stem = std::string("a/s.") + frame;
       const json record = json::parse(place.file(stem + ".run.json"));
-      const CDCube truth = readCube(place.scratch / (stem + ".truth.img"));
+      const Cube truth = readCube(place.scratch / (stem + ".truth.img"));
       double worst = 0, spoilt = 0;
       json wrong = record;
       wrong["camera"]["focal_length_px"] = 1.001 * double(record["camera"]["focal_length_px"]);
@@ -979,13 +979,13 @@ TEST(CommandRenderIdentity, TheSkyHasNoRangeAndADatedSceneATime) {
   const Workplace place(scene);
   const Outcome outcome = place.render("--out a --interleave bsq");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDCube truth = readCube(place.scratch / "a/s.0001.truth.img");
+  const Cube truth = readCube(place.scratch / "a/s.0001.truth.img");
   EXPECT_TRUE(std::isnan(truth.at(3, 0, 2)));
   EXPECT_EQ(truth.at(3, 0, 0), -1);
   EXPECT_TRUE(std::isfinite(truth.at(3, truth.header.height - 1, 2)));
   EXPECT_EQ(truth.header.ignore_value, "nan");
   EXPECT_EQ(truth.header.acquisition_time, "2001-06-10T17:07:30Z");
-  EXPECT_EQ(truth.header.interleave, CDInterleave::bsq);
+  EXPECT_EQ(truth.header.interleave, Interleave::bsq);
   const json record = json::parse(place.file("a/s.0001.run.json"));
   EXPECT_EQ(record["time"], "2001-06-10T17:07:30Z");
   EXPECT_TRUE(has(std::string(record["command"]), "--interleave bsq"));
@@ -1041,13 +1041,13 @@ TEST(SceneIdentity, BroadBandsAreMixedFromTheGridOfLight) {
   scene["geometry"] = json::parse(R"([{"ground": {"material": "ground"}}])");
   scene["radiometry"]["rays"] = {40};
   scene.erase("sun");
-  const CDScene read = readSceneText(scene.dump(), "s.json", ".");
-  const CDFrame frame = renderScene(read, 0, {1, CDTile{3, 3, 4, 4}, nullptr});
+  const Scene read = readSceneText(scene.dump(), "s.json", ".");
+  const RenderedImage frame = renderScene(read, 0, {1, Tile{3, 3, 4, 4}, nullptr});
   ASSERT_EQ(frame.bands, 2u);
   // The forty rays see cos(theta) summed a few per cent off; a narrow band at a known radiance says by how much.
   scene["bands"] = {{"wavelength_nm", {500}}};
-  const CDFrame narrow = renderScene(readSceneText(scene.dump(), "s.json", "."), 0,
-                                     {1, CDTile{3, 3, 4, 4}, nullptr});
+  const RenderedImage narrow = renderScene(readSceneText(scene.dump(), "s.json", "."), 0,
+                                           {1, Tile{3, 3, 4, 4}, nullptr});
   const double per_radiance = narrow.at(0, 0)[0] / 0.5,
                rounding = 1e-12;  // of averages over a dozen wavelengths
   EXPECT_NEAR(frame.at(0, 0, 0)[0] / per_radiance, 0.5, rounding);

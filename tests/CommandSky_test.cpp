@@ -9,20 +9,20 @@
 
 #include "ExtremeNumbers.hpp"
 #include "Program.hpp"
-#include "light/CDTable.hpp"
-#include "world/CDSky.hpp"
-#include "world/CDSun.hpp"
+#include "malus/air/Sky.hpp"
+#include "malus/air/Sun.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 
 namespace {
-CDTable tableOf(const std::string& text) {
+Table tableOf(const std::string& text) {
   std::istringstream stream(text);
-  return CDTable::parse(stream, "answer");
+  return Table::parse(stream, "answer");
 }
 
 // The printed values as a file of questions: the file's own columns under the names of malus sky.
-std::string questions(const CDTable& printed) {
+std::string questions(const Table& printed) {
   std::string text = "tau,depolarization,albedo,irradiance,mu0,mu,phi_deg,direction,tau_obs\n";
   for (std::size_t row = 0; row < printed.rows(); ++row) {
     for (const char* column : {"tau", "rho_depol", "albedo", "F0", "mu0", "mu", "phi_deg"})
@@ -41,7 +41,7 @@ const std::string spheroids =
 
 // Siewert 2000, problem IIA, through files: half a unit of the sixth digit, and 1e-6 for flat lines of sight.
 TEST(CommandSkyPublished, AFileOfAerosolQuestions) {
-  const CDTable printed = CDTable::read("validation/printed/siewert2000.csv");
+  const Table printed = Table::read("validation/printed/siewert2000.csv");
   const Scratch scratch;
   std::string text = "tau,aerosol_tau,aerosol_albedo,mu0,mu,phi_deg,direction,tau_obs\n";
   const std::vector<std::pair<std::string, std::string>> depths{
@@ -64,7 +64,7 @@ TEST(CommandSkyPublished, AFileOfAerosolQuestions) {
   const Outcome outcome = malusIn(
       scratch.path, "sky --points questions.csv --convention iprt --aerosol " + spheroids);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDTable answer = tableOf(outcome.out);
+  const Table answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), wanted.size());
   int with_v = 0;
   for (std::size_t row = 0; row < wanted.size(); ++row) {
@@ -82,7 +82,7 @@ TEST(CommandSkyPublished, AFileOfAerosolQuestions) {
 TEST(CommandSkyInvariant, FluxesBalance) {
   const Scratch scratch;
   for (const std::string albedo : {"0", "0.3", "1"}) {
-    const CDTable clear = tableOf(
+    const Table clear = tableOf(
         malusIn(scratch.path,
                 "sky --tau 0.5 --depolarization 0.03 --mu0 0.6 --fluxes --albedo " + albedo)
             .out);
@@ -91,11 +91,11 @@ TEST(CommandSkyInvariant, FluxesBalance) {
     EXPECT_NEAR(clear.number(0, "flux_direct"), 0.6 * std::numbers::pi * std::exp(-0.5 / 0.6),
                 1e-14);
     EXPECT_GT(clear.number(0, "flux_down"), 0.1);
-    const CDTable dusty = tableOf(malusIn(scratch.path,
-                                          "sky --tau 0.5 --mu0 0.6 --fluxes --aerosol-tau 0.2 "
-                                          "--aerosol-albedo 0.9 --aerosol " +
-                                              spheroids + " --albedo " + albedo)
-                                      .out);
+    const Table dusty = tableOf(malusIn(scratch.path,
+                                        "sky --tau 0.5 --mu0 0.6 --fluxes --aerosol-tau 0.2 "
+                                        "--aerosol-albedo 0.9 --aerosol " +
+                                            spheroids + " --albedo " + albedo)
+                                    .out);
     EXPECT_GT(dusty.number(0, "flux_air"), 0.01);  // control: what absorbs does not balance
   }
 }
@@ -105,8 +105,8 @@ TEST(CommandSkyIdentity, PathAndGroundAddUp) {
   const Scratch scratch;
   const std::string question =
       "sky --tau 0.3 --mu0 0.6 --mu 0.4 --phi 50 --direction up --tau-obs 0.1 --path ";
-  const CDTable grey = tableOf(malusIn(scratch.path, question + "--albedo 0.4").out),
-                black = tableOf(malusIn(scratch.path, question).out);
+  const Table grey = tableOf(malusIn(scratch.path, question + "--albedo 0.4").out),
+              black = tableOf(malusIn(scratch.path, question).out);
   EXPECT_NEAR(grey.number(0, "transmission"), std::exp(-0.2 / 0.4), 1e-15);
   EXPECT_NEAR(
       grey.number(0, "path_I") + grey.number(0, "transmission") * grey.number(0, "ground_I"),
@@ -128,13 +128,13 @@ TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     for (const char* kind : {"S0", "DoLP", "AoLP"})
       EXPECT_GT(std::filesystem::file_size(scratch / fmt::format("dome.{}.png", kind)), 1000u);
-    const CDTable points = tableOf(outcome.out);
+    const Table points = tableOf(outcome.out);
     std::vector<std::string> names = points.text("name");
     EXPECT_NE(std::find(names.begin(), names.end(), "Babinet"), names.end());
     EXPECT_NE(std::find(names.begin(), names.end(), "Arago"), names.end());
     for (std::size_t row = 0; row < points.rows(); ++row) {
       const auto at = [&](double zenith_deg) {
-        const CDTable one =
+        const Table one =
             tableOf(malusIn(scratch.path,
                             air + fmt::format(" --mu {} --phi {}",
                                               std::cos(zenith_deg * std::numbers::pi / 180),
@@ -153,14 +153,14 @@ TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
 
 // Natraj, Li and Yung 2009 and IPRT A2; half a unit of the last printed digit, or the file's tolerance.
 TEST(CommandSkyPublished, AFileOfPrintedValuesInEveryConvention) {
-  const CDTable printed = CDTable::read("validation/printed/rayleigh.csv");
+  const Table printed = Table::read("validation/printed/rayleigh.csv");
   const Scratch scratch;
   put(scratch / "questions.csv", questions(printed));
   for (const std::string convention : {"iprt", "natraj", "malus"}) {
     const Outcome outcome =
         malusIn(scratch.path, "sky --points questions.csv --convention " + convention);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const CDTable answer = tableOf(outcome.out);
+    const Table answer = tableOf(outcome.out);
     EXPECT_EQ(answer.header("convention"), convention);
     ASSERT_EQ(answer.rows(), printed.rows());
     const double q_sign = convention == "iprt" ? 1 : -1;
@@ -181,11 +181,11 @@ TEST(CommandSkyPublished, AFileOfPrintedValuesInEveryConvention) {
 TEST(CommandSkyIdentity, FlagsAskTheSameAsAFile) {
   const Scratch scratch;
   put(scratch / "one.csv", "tau,albedo,mu0,mu,phi_deg,label\n0.5,0.25,0.6,0.4,90,here\n");
-  const CDTable flags = tableOf(
+  const Table flags = tableOf(
       malusIn(scratch.path,
               "sky --tau 0.5 --albedo 0.25 --mu0 0.6 --mu 0.4 --phi 90 --convention iprt")
           .out);
-  const CDTable file =
+  const Table file =
       tableOf(malusIn(scratch.path, "sky --points one.csv --convention iprt").out);
   ASSERT_EQ(flags.rows(), 1u);
   for (const char* column : {"I", "Q", "U"})
@@ -204,11 +204,11 @@ TEST(CommandSkyIdentity, TheDomeIsASky) {
         "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --dome 10 --out sky.csv --convention " +
             convention);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const CDTableSky sky(CDTable::read(scratch / "sky.csv"), CDSpectralGrid::make({450.0}));
+    const TableSky sky(Table::read(scratch / "sky.csv"), SpectralGrid::make({450.0}));
     CDSpectralVector<CDStokesVector> out(sky.grid());
     const double degree = std::numbers::pi / 180;
     sky.radiance(compassDirection(60 * degree, 40 * degree), out);
-    const CDTable one =
+    const Table one =
         tableOf(malusIn(scratch.path,
                         "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --mu 0.5 --phi 40")
                     .out);
@@ -222,14 +222,14 @@ TEST(CommandSkyIdentity, TheDomeIsASky) {
 
 TEST(CommandSkyIdentity, WavelengthsAndTheRealSun) {
   const Scratch scratch;
-  const CDTable real = tableOf(
+  const Table real = tableOf(
       malusIn(scratch.path, "sky --wavelength-nm 450 --mu0 0.9 --mu 0.5 --irradiance astm-e490")
           .out);
-  const CDTable unit = tableOf(
+  const Table unit = tableOf(
       malusIn(scratch.path, "sky --wavelength-nm 450 --mu0 0.9 --mu 0.5 --irradiance 1").out);
   EXPECT_NEAR(real.number(0, "I") / unit.number(0, "I"), 1.996,
               0.0005);  // ASTM E490, 10-nm mean
-  const CDTable low = tableOf(
+  const Table low = tableOf(
       malusIn(scratch.path, "sky --wavelength-nm 450 --pressure-hPa 500 --mu0 0.9 --mu 0.5")
           .out);
   EXPECT_LT(low.number(0, "I"), unit.number(0, "I") * std::numbers::pi);
@@ -380,7 +380,7 @@ TEST(CommandSkyInvariant, AGrazingSunIsBalanced) {
     const Outcome outcome =
         malusIn(scratch.path, std::string("sky --tau 0.05 --albedo 1 --fluxes --mu0 ") + sun);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const CDTable fluxes = tableOf(outcome.out);
+    const Table fluxes = tableOf(outcome.out);
     EXPECT_NEAR(fluxes.number(0, "flux_up") / fluxes.number(0, "flux_in"), 1, 2e-6) << sun;
   }
 }

@@ -7,24 +7,24 @@
 
 #include "ExtremeNumbers.hpp"
 #include "Program.hpp"
-#include "light/CDTable.hpp"
+#include "malus/base/Table.hpp"
 
-using malus::CDTable;
+using malus::Table;
 
 namespace {
-CDTable tableOf(const std::string& text) {
+Table tableOf(const std::string& text) {
   std::istringstream stream(text);
-  return CDTable::parse(stream, "answer");
+  return Table::parse(stream, "answer");
 }
 const char* const nrel = "sun --lat 39.742476 --lon -105.1786 --time 2003-10-17T12:30:30-07:00";
 }  // namespace
 
-// Reda and Andreas, NREL/TP-560-34302, table A5.1; tolerances as in CDSun_test.
+// Reda and Andreas, NREL/TP-560-34302, table A5.1; tolerances as in Sun_test.
 TEST(CommandSunPublished, NrelWorkedExample) {
   const Scratch scratch;
   const Outcome outcome = malusIn(scratch.path, nrel);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDTable answer = tableOf(outcome.out);
+  const Table answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), 1u);
   EXPECT_NEAR(answer.number(0, "zenith_deg"), 50.11162 + 0.01633, 1e-4);
   EXPECT_NEAR(answer.number(0, "azimuth_deg"), 194.34024, 2e-4);
@@ -41,8 +41,8 @@ TEST(CommandSunIdentity, AFileAsksTheSame) {
   const Outcome outcome = malusIn(scratch.path, "sun --points places.csv --out suns.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  const CDTable file = CDTable::read(scratch / "suns.csv"),
-                flags = tableOf(malusIn(scratch.path, nrel).out);
+  const Table file = Table::read(scratch / "suns.csv"),
+              flags = tableOf(malusIn(scratch.path, nrel).out);
   ASSERT_EQ(file.rows(), 2u);
   EXPECT_EQ(file.cell(0, "zenith_deg"), flags.cell(0, "zenith_deg"));
   EXPECT_NE(file.cell(1, "zenith_deg"), flags.cell(0, "zenith_deg"));
@@ -55,7 +55,7 @@ TEST(CommandSunIdentity, ASeriesOfTwelveHours) {
               "sun --lat 43.16 --lon -77.61 --time 2001-06-21T07:00:00-04:00 --until "
               "2001-06-21T18:00:00-04:00");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const CDTable answer = tableOf(outcome.out);
+  const Table answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), 12u);
   EXPECT_EQ(answer.cell(0, "time"), "2001-06-21T11:00:00Z");
   EXPECT_EQ(answer.cell(11, "time"), "2001-06-21T22:00:00Z");

@@ -1,6 +1,6 @@
 // The light that single reflections lose: against an integral in other coordinates, a sum over
 // the hemisphere, drawn facets, and the printed table 7.1 (nw/matter/DHRTorranceSparrow.nw).
-#include "matter/DHRTorranceSparrow.hpp"
+#include "malus/surface/DHRTorranceSparrow.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using std::numbers::pi;
@@ -68,14 +68,13 @@ double polarRemainder(double theta, double sigma) {
 }
 
 // As in 2002: a sum over a grid of directions in the hemisphere.
-double hemisphericalSum(double theta, double sigma, CDShadowing kind, int zeniths,
-                        int azimuths) {
+double hemisphericalSum(double theta, double sigma, Shadowing kind, int zeniths, int azimuths) {
   double sum = 0;
   for (int z = 0; z < zeniths; ++z)
     for (int a = 0; a < azimuths; ++a) {
       const double from = z * pi / 2 / zeniths, to = (z + 1) * pi / 2 / zeniths;
       const auto g =
-          CDBRDFGeometry::fromAngles(theta, (from + to) / 2, (a + 0.5) * 2 * pi / azimuths);
+          BRDFGeometry::fromAngles(theta, (from + to) / 2, (a + 0.5) * 2 * pi / azimuths);
       const double solid_angle = (std::cos(from) - std::cos(to)) * 2 * pi / azimuths;
       sum += facetFactor(kind, g, facetGeometry(g), sigma) * g.cos_r * solid_angle;
     }
@@ -100,8 +99,8 @@ TEST(DHRTorranceSparrowIdentity, NegativeControlAnotherRoughnessIsAnotherRemaind
 
 TEST(DHRTorranceSparrowIdentity, QuadratureEqualsASumOverTheHemisphere) {
   // The grid's own error, seen by halving it, is below 3e-4 in the worst of these cases.
-  for (const auto kind : {CDShadowing::none, CDShadowing::vGroove, CDShadowing::smith,
-                          CDShadowing::smithCorrelated})
+  for (const auto kind :
+       {Shadowing::none, Shadowing::vGroove, Shadowing::smith, Shadowing::smithCorrelated})
     for (const double theta_deg : {0.0, 40.0, 75.0}) {
       const double sum = hemisphericalSum(theta_deg * degree, 0.3, kind, 300, 300);
       const double exact = DHRTorranceSparrow::integrate(theta_deg * degree, 0.3, kind);
@@ -111,7 +110,7 @@ TEST(DHRTorranceSparrowIdentity, QuadratureEqualsASumOverTheHemisphere) {
 
 TEST(DHRTorranceSparrowIdentity, LimitsOfAngleAndRoughness) {
   EXPECT_EQ(DHRTorranceSparrow::integrate(0.7, 0), 1);
-  EXPECT_EQ(DHRTorranceSparrow::integrate(0.7, 0, CDShadowing::smith), 1);
+  EXPECT_EQ(DHRTorranceSparrow::integrate(0.7, 0, Shadowing::smith), 1);
   EXPECT_EQ(dhr.getDHR(0.7, 0), 1);
   EXPECT_EQ(dhr.getAverage(0), 1);
   EXPECT_NEAR(DHRTorranceSparrow::integrate(0.7, 1e-9), 1, 1e-15);
@@ -124,15 +123,15 @@ TEST(DHRTorranceSparrowIdentity, LimitsOfAngleAndRoughness) {
 
 TEST(DHRTorranceSparrowIdentity, RefusesWhatIsNoAngleAndNoRoughness) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(dhr.getDHR(-0.1, 0.2), CDMathError);
-  EXPECT_THROW(dhr.getDHR(1.6, 0.2), CDMathError);
-  EXPECT_THROW(dhr.getDHR(nan, 0.2), CDMathError);
-  EXPECT_THROW(dhr.getDHR(0.1, -0.2), CDMathError);
-  EXPECT_THROW(dhr.getDHR(0.1, nan), CDMathError);
-  EXPECT_THROW(dhr.getRemainder(-0.1, 1, 0.2), CDMathError);
-  EXPECT_THROW(dhr.getRemainder(nan, 1, 0.2), CDMathError);
-  EXPECT_THROW(dhr.getAverage(-1), CDMathError);
-  EXPECT_THROW(DHRTorranceSparrow::integrate(2, 0.2, CDShadowing::none), CDMathError);
+  EXPECT_THROW(dhr.getDHR(-0.1, 0.2), MathError);
+  EXPECT_THROW(dhr.getDHR(1.6, 0.2), MathError);
+  EXPECT_THROW(dhr.getDHR(nan, 0.2), MathError);
+  EXPECT_THROW(dhr.getDHR(0.1, -0.2), MathError);
+  EXPECT_THROW(dhr.getDHR(0.1, nan), MathError);
+  EXPECT_THROW(dhr.getRemainder(-0.1, 1, 0.2), MathError);
+  EXPECT_THROW(dhr.getRemainder(nan, 1, 0.2), MathError);
+  EXPECT_THROW(dhr.getAverage(-1), MathError);
+  EXPECT_THROW(DHRTorranceSparrow::integrate(2, 0.2, Shadowing::none), MathError);
 }
 
 TEST(DHRTorranceSparrowInvariant, TableErrsByLessThanItPromises) {
@@ -158,9 +157,8 @@ TEST(DHRTorranceSparrowInvariant, BetweenZeroAndOneEverywhere) {
 
 TEST(DHRTorranceSparrowInvariant, WithoutShadowingItExceedsOneAndWithItNever) {
   const double grazing = 85 * degree;
-  EXPECT_GT(DHRTorranceSparrow::integrate(grazing, 0.3, CDShadowing::none), 1);
-  for (const auto kind :
-       {CDShadowing::vGroove, CDShadowing::smith, CDShadowing::smithCorrelated})
+  EXPECT_GT(DHRTorranceSparrow::integrate(grazing, 0.3, Shadowing::none), 1);
+  for (const auto kind : {Shadowing::vGroove, Shadowing::smith, Shadowing::smithCorrelated})
     EXPECT_LE(DHRTorranceSparrow::integrate(grazing, 0.3, kind), 1);
 }
 
@@ -178,9 +176,9 @@ TEST(DHRTorranceSparrowInvariant, DrawnFacetsReflectTheSameShare) {
     const CDVector m = sampleVGrooveNormal(i, sigma, u1, u2, u3);
     const CDVector r = 2 * dot(i, m) * m - i;
     if (r.z <= 0) continue;
-    const auto g = CDBRDFGeometry::fromDirections(i, r);
+    const auto g = BRDFGeometry::fromDirections(i, r);
     const auto facet = facetGeometry(g);
-    const double weight = facetFactor(CDShadowing::vGroove, g, facet, sigma) * g.cos_r /
+    const double weight = facetFactor(Shadowing::vGroove, g, facet, sigma) * g.cos_r /
                           vGrooveReflectionDensity(g, facet, sigma);
     ASSERT_LE(weight, 1 + 1e-12);
     sum += weight;

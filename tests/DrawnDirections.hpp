@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ChiSquared.hpp"
-#include "matter/CDBRDFModel.hpp"
+#include "malus/surface/CDBRDFModel.hpp"
 
 namespace malus::testing {
 struct Drawn {
@@ -37,10 +37,10 @@ inline Drawn draw(const CDBRDFModel& sampler, const CDBRDFModel& claimed, double
     }
   probability.back() = std::max(1 - total, 0.0);
   std::vector<std::size_t> counts(probability.size());
-  CDRandom random(17);
+  Random random(17);
   for (std::size_t i = 0; i < draws; ++i) {
     const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
-    const CDBRDFSample s = sampler.sample(given, u1, u2, u3);
+    const BRDFSample s = sampler.sample(given, u1, u2, u3);
     if (s.rejected()) {
       ++counts.back();
       continue;

@@ -1,5 +1,5 @@
 // What surfaces emit (nw/matter/Emission.nw).
-#include "matter/Emission.hpp"
+#include "malus/surface/Emission.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,25 +9,25 @@
 
 #include "ModelChecks.hpp"
 #include "Worlds.hpp"
-#include "imaging/CDRadiometry.hpp"
-#include "light/CDError.hpp"
-#include "light/CDSpectralUnits.hpp"
-#include "matter/BRDFBeardMaxwell.hpp"
-#include "matter/BRDFDIRSIG.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFGlossyCoating.hpp"
-#include "matter/BRDFNadalBreon.hpp"
-#include "matter/BRDFRobertsonSandford.hpp"
-#include "matter/BRDFRoughWater.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/Fresnel.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/light/CDSpectralUnits.hpp"
+#include "malus/render/Radiometry.hpp"
+#include "malus/surface/BRDFBeardMaxwell.hpp"
+#include "malus/surface/BRDFDIRSIG.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFGlossyCoating.hpp"
+#include "malus/surface/BRDFNadalBreon.hpp"
+#include "malus/surface/BRDFRobertsonSandford.hpp"
+#include "malus/surface/BRDFRoughWater.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/Fresnel.hpp"
 
 using namespace malus;
 using namespace malus::testing;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-constexpr CDTorranceSparrowOptions bare{CDShadowing::none, CDDiffuseTerm::none};
+constexpr TorranceSparrowOptions bare{Shadowing::none, DiffuseTerm::none};
 
 std::shared_ptr<const CDBRDFModel> lambert(double reflectance) {
   return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
@@ -84,7 +84,7 @@ TEST(EmissionIdentity, PlanckAtItsEnds) {
                                       {500.0, -1.0},
                                       {500.0, nan},
                                       {500.0, inf}})
-    EXPECT_THROW(planckRadiance(bad_nm, bad_K), CDMathError) << bad_nm << ' ' << bad_K;
+    EXPECT_THROW(planckRadiance(bad_nm, bad_K), MathError) << bad_nm << ' ' << bad_K;
 }
 
 // Facets of 1e-4: the Fresnel factors of a tenth of a milliradian around are averaged, which changes them by less than
@@ -139,22 +139,20 @@ const std::vector<Named>& reciprocalModels() {
   static const std::vector<Named> models{
       {"facets", std::make_shared<BRDFTorranceSparrow>(
                      value(1.5), value(0), value(0.2),
-                     CDTorranceSparrowOptions{CDShadowing::smith, CDDiffuseTerm::none})},
-      {"v-grooves",
-       std::make_shared<BRDFTorranceSparrow>(
-           value(8.31), value(63), value(0.1),
-           CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::reciprocal})},
+                     TorranceSparrowOptions{Shadowing::smith, DiffuseTerm::none})},
+      {"v-grooves", std::make_shared<BRDFTorranceSparrow>(
+                        value(8.31), value(63), value(0.1),
+                        TorranceSparrowOptions{Shadowing::vGroove, DiffuseTerm::reciprocal})},
       {"copper", std::make_shared<BRDFTorranceSparrow>(
                      value(8.31), value(63), value(0.1),
-                     CDTorranceSparrowOptions{CDShadowing::smith, CDDiffuseTerm::none})},
-      {"copper grooves",
-       std::make_shared<BRDFTorranceSparrow>(
-           value(8.31), value(63), value(0.1),
-           CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::none})},
+                     TorranceSparrowOptions{Shadowing::smith, DiffuseTerm::none})},
+      {"copper grooves", std::make_shared<BRDFTorranceSparrow>(
+                             value(8.31), value(63), value(0.1),
+                             TorranceSparrowOptions{Shadowing::vGroove, DiffuseTerm::none})},
       {"cosine lobe",
-       std::make_shared<BRDFDIRSIG>(value(0.1), value(2), value(0.35), CDLobeShape::cosine)},
+       std::make_shared<BRDFDIRSIG>(value(0.1), value(2), value(0.35), LobeShape::cosine)},
       {"coating", std::make_shared<BRDFGlossyCoating>(value(1.5), value(0.5), 0.1)},
-      {"water", std::make_shared<BRDFRoughWater>(value(0.02), CDWaterState{})},
+      {"water", std::make_shared<BRDFRoughWater>(value(0.02), WaterState{})},
       {"leaves", std::make_shared<BRDFNadalBreon>(value(0.2), 0.03, 8)}};
   return models;
 }
@@ -181,9 +179,8 @@ TEST(EmissionInvariant, NoModelIsHanded) {
   for (const auto& [name, model] : reciprocalModels())
     for (const Angles& a : someAngles(30)) {
       const auto
-          one = model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi)).at(0),
-          other =
-              model->getBRDF(CDBRDFGeometry::fromAngles(a.theta_i, a.theta_r, -a.phi)).at(0);
+          one = model->getBRDF(BRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi)).at(0),
+          other = model->getBRDF(BRDFGeometry::fromAngles(a.theta_i, a.theta_r, -a.phi)).at(0);
       for (int j = 0; j < 4; ++j)
         EXPECT_NEAR(one.getMueller(j, 0), (j < 2 ? 1 : -1) * other.getMueller(j, 0),
                     1e-9 * one.getScalar())  // rounding of facets near grazing
@@ -195,7 +192,7 @@ TEST(EmissionInvariant, NoModelIsHanded) {
 TEST(EmissionInvariant, GlowIsParallelAndRoughnessBlursIt) {
   double before = 1;
   for (const double sigma : {0.01, 0.1, 0.2, 0.3}) {
-    const BRDFTorranceSparrow glass(1.5, 0, sigma, {CDShadowing::smith, CDDiffuseTerm::none});
+    const BRDFTorranceSparrow glass(1.5, 0, sigma, {Shadowing::smith, DiffuseTerm::none});
     const CDStokesVector e = emissivityOf(glass, 70 * degree).at(0);
     EXPECT_LT(e.getStokes(1), 0);
     EXPECT_LT(e.getDOLP(), before);
@@ -210,21 +207,21 @@ TEST(EmissionIdentity, RefusesWhatCannotEmit) {
   EXPECT_GT(metal.getDHR(1.55)[0], 1);  // as its chapter says
   EXPECT_NO_THROW(emissivityOf(metal, 0.3));
   try {
-    CDEmission emission(metal, 300);
+    Emission emission(metal, 300);
     FAIL() << "no error";
-  } catch (const CDMathError& error) {
+  } catch (const MathError& error) {
     EXPECT_NE(std::string(error.what()).find("which leaves no emissivity"), std::string::npos);
   }
   for (const double zenith : {-0.1, pi / 2, std::nan("")})
-    EXPECT_THROW(emissivityOf(*lambert(0.5), zenith), CDMathError);
-  EXPECT_THROW(CDEmission(*lambert(0.5), -1), CDMathError);
+    EXPECT_THROW(emissivityOf(*lambert(0.5), zenith), MathError);
+  EXPECT_THROW(Emission(*lambert(0.5), -1), MathError);
 }
 
 // The table against the integral between its nodes, copper's narrow peak above the horizon included; linear
 // interpolation on 128 nodes errs by an eighth of the second difference.
 TEST(EmissionIdentity, TheTableIsTheIntegral) {
-  const BRDFTorranceSparrow copper(8.31, 63.0, 1e-4, {CDShadowing::smith, CDDiffuseTerm::none});
-  const CDEmission emission(copper, 300);
+  const BRDFTorranceSparrow copper(8.31, 63.0, 1e-4, {Shadowing::smith, DiffuseTerm::none});
+  const Emission emission(copper, 300);
   const double black = planckRadiance(copper.grid()->nm(0), 300);
   double most = 0;
   for (const double deg : {0.0, 10.3, 33.3, 55.1, 70.7, 80.9, 87.3, 89.05}) {
@@ -241,7 +238,7 @@ TEST(EmissionIdentity, TheTableIsTheIntegral) {
 }
 
 TEST(EmissionIdentity, NothingAtTheHorizonAndBelow) {
-  const CDEmission emission(*lambert(0.2), 6000);
+  const Emission emission(*lambert(0.2), 6000);
   CDSpectralVector<CDStokesVector> sum(oneBand(), CDStokesVector(0.0));
   for (const double cosine : {0.0, -0.5, std::nan("")}) emission.add(cosine, sum);
   EXPECT_EQ(sum.at(0), CDStokesVector(0.0));
@@ -254,9 +251,8 @@ TEST(EmissionIdentity, NothingAtTheHorizonAndBelow) {
 TEST(EmissionInvariant, LookingUpAllocatesNothing) {
   const auto grid = manyBands();
   const BRDFTorranceSparrow glass(ramp(grid, 1.4, 1.6), ramp(grid, 0, 0.1),
-                                  ramp(grid, 0.2, 0.2),
-                                  {CDShadowing::smith, CDDiffuseTerm::none});
-  const CDEmission emission(glass, 500);
+                                  ramp(grid, 0.2, 0.2), {Shadowing::smith, DiffuseTerm::none});
+  const Emission emission(glass, 500);
   CDSpectralVector<CDStokesVector> sum(grid);
   sum.polarize();
   const std::size_t before = allocations;
@@ -271,27 +267,27 @@ TEST(EmissionInvariant, LookingUpAllocatesNothing) {
 namespace {
 constexpr double room_K = 6000;  // hot enough to glow in the room's one band of 550 nm
 
-CDWorld roomOf(double warmer_K) {
+World roomOf(double warmer_K) {
   const auto& models = reciprocalModels();
   // facets, lobe, water, leaves, matt, facets
-  CDWorld world = worldOf(boxOf({models[0].model, models[4].model, models[6].model,
-                                 models[7].model, lambert(0.3), models[0].model}));
-  for (CDMaterial& wall : world.materials)
-    wall.emission = std::make_shared<CDEmission>(*wall.brdf, room_K);
+  World world = worldOf(boxOf({models[0].model, models[4].model, models[6].model,
+                               models[7].model, lambert(0.3), models[0].model}));
+  for (Material& wall : world.materials)
+    wall.emission = std::make_shared<Emission>(*wall.brdf, room_K);
   world.materials[1].emission =
-      std::make_shared<CDEmission>(*world.materials[1].brdf, room_K + warmer_K);
+      std::make_shared<Emission>(*world.materials[1].brdf, room_K + warmer_K);
   return world;
 }
-const CDRadiometryOptions deep{.sampling = CDSampling::importance, .rays = {33, 2, 2, 2, 2, 2}};
+const RadiometryOptions deep{.sampling = Sampling::importance, .rays = {33, 2, 2, 2, 2, 2}};
 }  // namespace
 
 TEST(EmissionInvariant, ARoomOfOneTemperatureIsBlackAndUnpolarised) {
-  const CDWorld room = roomOf(0);
+  const World room = roomOf(0);
   const double black = planckRadiance(550, room_K);
   for (const CDVector& from : {CDVector{0.3, 0.2, 0.9}, CDVector{0.8, -0.1, 0.3},
                                CDVector{0.2, 0.6, -0.5}, CDVector{-0.7, 0.4, -0.4}}) {
     const CDVector to = CDVector{0.1, -0.05, 0} + from * (from.z > 0 ? -1.0 : 1.0);
-    CDRadiometry::Ray ray{{0.1, 0.05, 0}, normalized(to), {0.3, 0.9, 0.1}, 0, 0, 0};
+    Radiometry::Ray ray{{0.1, 0.05, 0}, normalized(to), {0.3, 0.9, 0.1}, 0, 0, 0};
     const Estimate seen = estimate(room, deep, ray, 500);
     // five standard errors of 16 numbers; what six reflections leave out; the points of the integral
     const double slack = 2e-3 * black;
@@ -305,11 +301,11 @@ TEST(EmissionInvariant, ARoomOfOneTemperatureIsBlackAndUnpolarised) {
 // Negative controls: a wall that is warmer, and a wall alone, show.
 TEST(EmissionInvariant, AWarmerWallAndAWallAloneShow) {
   const double black = planckRadiance(550, room_K);
-  const CDRadiometry::Ray up{{0.1, 0.05, 0}, normalized({0.2, 0.1, 1}), {1, 0, 0}, 0, 0, 0};
+  const Radiometry::Ray up{{0.1, 0.05, 0}, normalized({0.2, 0.1, 1}), {1, 0, 0}, 0, 0, 0};
   EXPECT_GT(estimate(roomOf(100), deep, up, 100).mean[0], 1.02 * black);
-  CDRadiometryOptions alone;
+  RadiometryOptions alone;
   alone.rays = {1};
-  const CDRadiometry::Ray down{{-0.8, 0.05, 0}, normalized({1.6, 0.1, -1}), {0, 1, 0}, 0, 0, 0};
+  const Radiometry::Ray down{{-0.8, 0.05, 0}, normalized({1.6, 0.1, -1}), {0, 1, 0}, 0, 0, 0};
   const Estimate seen = estimate(roomOf(0), alone, down, 1);
   EXPECT_LT(seen.mean[0], 0.97 * black);
   EXPECT_GT(std::hypot(seen.mean[1], seen.mean[2]), 0.01 * black);
@@ -317,20 +313,19 @@ TEST(EmissionInvariant, AWarmerWallAndAWallAloneShow) {
 
 // Cold materials and no emission at all are the same picture, bit by bit.
 TEST(EmissionInvariant, ZeroKelvinChangesNoBit) {
-  CDWorld cold = roomOf(0), none = cold;
-  for (CDWorld* world : {&cold, &none}) {
-    world->sun.emplace(CDSun{normalized({0.3, 0.2, 0.9}), spectrumOf(CDStokesVector(2.0))});
-    for (CDMaterial& wall : world->materials) wall.emission = nullptr;
+  World cold = roomOf(0), none = cold;
+  for (World* world : {&cold, &none}) {
+    world->sun.emplace(Sun{normalized({0.3, 0.2, 0.9}), spectrumOf(CDStokesVector(2.0))});
+    for (Material& wall : world->materials) wall.emission = nullptr;
   }
-  for (CDMaterial& wall : cold.materials)
-    wall.emission = std::make_shared<CDEmission>(*wall.brdf, 0);
+  for (Material& wall : cold.materials)
+    wall.emission = std::make_shared<Emission>(*wall.brdf, 0);
   cold.sky = none.sky = uniformSky(1);
-  CDRadiometryOptions options;
+  RadiometryOptions options;
   options.rays = {40, 3};
-  const auto look = [&](const CDWorld& world) {
-    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                  options);
-    const CDRadiometry::Ray ray = looking({0, 0, -1}, {1, 0.5, 2}, {1, 0, 0});
+  const auto look = [&](const World& world) {
+    const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
+    const Radiometry::Ray ray = looking({0, 0, -1}, {1, 0.5, 2}, {1, 0, 0});
     std::array<double, 4> out{};
     radiometry.radiance({&ray, 1}, out);
     return out;

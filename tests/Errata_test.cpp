@@ -1,5 +1,5 @@
 // Findings about the thesis, and the list of errata against the committed verdicts (nw/thesis/Errata.nw).
-#include "thesis/Errata.hpp"
+#include "malus/thesis/Errata.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using namespace malus;
 namespace {
 /// "item/claim" of every erratum in the committed verdicts.
 std::set<std::string> committedErrata() {
-  const CDTable table = CDTable::read("validation/claims.csv");
+  const Table table = Table::read("validation/claims.csv");
   std::set<std::string> errata;
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (table.cell(row, "verdict") == "erratum")
@@ -45,7 +45,7 @@ std::string chapter() {
 }  // namespace
 
 TEST(ErrataPublished, EveryFindingIsVerified) {
-  const std::map<const char*, CDItemFunction> findings{
+  const std::map<const char*, ItemFunction> findings{
       {"N1", reproduceN1},   {"N2", reproduceN2},  {"N3", reproduceN3}, {"N4", reproduceN4},
       {"N5", reproduceN5},   {"N6", reproduceN6},  {"N7", reproduceN7}, {"N9", reproduceN9},
       {"N10", reproduceN10}, {"N11", reproduceN11}};
@@ -53,7 +53,7 @@ TEST(ErrataPublished, EveryFindingIsVerified) {
     // the reading nearest to the digits misses two of them (finding 3)
     const std::set<std::string> known =
         id == std::string("N3") ? std::set<std::string>{"digits"} : std::set<std::string>{};
-    EXPECT_EQ(named(ran(id, function), CDVerdict::differs), known) << id;
+    EXPECT_EQ(named(ran(id, function), Verdict::differs), known) << id;
   }
 }
 
@@ -83,5 +83,5 @@ TEST(ErrataPublished, NegativeControlAnInventedErratumIsSeen) {
 
 TEST(ErrataPublished, NegativeControlAChangedNumberOfTheTracedColumnIsSeen) {
   const Corrupted table("T7.1.csv", "34.07", "34.17");
-  EXPECT_FALSE(named(ran("N7", reproduceN7, table.data), CDVerdict::differs).empty());
+  EXPECT_FALSE(named(ran("N7", reproduceN7, table.data), Verdict::differs).empty());
 }

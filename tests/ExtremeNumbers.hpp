@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "Program.hpp"
-#include "light/CDTable.hpp"
+#include "malus/base/Table.hpp"
 
 inline const std::vector<std::string>& extremeNumbers() {
   static const std::vector<std::string> all{
@@ -31,7 +31,7 @@ inline void expectFiniteOrRefused(const std::filesystem::path& directory,
     if (outcome.code == 0) {
       ++answered;
       std::istringstream stream(outcome.out);
-      const malus::CDTable table = malus::CDTable::parse(stream, "answer");
+      const malus::Table table = malus::Table::parse(stream, "answer");
       for (std::size_t row = 0; row < table.rows(); ++row)
         for (const std::string& column : table.columns()) {
           std::string cell = table.cell(row, column);

@@ -1,6 +1,6 @@
 // A smooth boundary against std::complex, Maxwell's boundary conditions and printed values
 // (nw/matter/Fresnel.nw).
-#include "matter/Fresnel.hpp"
+#include "malus/surface/Fresnel.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 using std::numbers::pi;
@@ -32,14 +32,14 @@ Amplitudes textbook(double theta, Complex N) {
   return {(c - N * cos_t) / (c + N * cos_t), (N * c - cos_t) / (cos_t + N * c)};
 }
 
-double worstDifference(const CDFresnelTerms<double>& f, const Amplitudes& r) {
+double worstDifference(const FresnelTerms<double>& f, const Amplitudes& r) {
   const double Rs = std::norm(r.rs), Rp = std::norm(r.rp);
   const Complex cross = r.rs * std::conj(r.rp);
   return std::max({std::abs(f.sum - (Rs + Rp) / 2), std::abs(f.diff - (Rs - Rp) / 2),
                    std::abs(f.re - cross.real()), std::abs(f.im - cross.imag())});
 }
 
-CDFresnelTerms<double> at(double theta, double n, double k) {
+FresnelTerms<double> at(double theta, double n, double k) {
   const double s = std::sin(theta);
   return fresnelReflection(std::cos(theta), s * s, n * n - k * k, 2 * n * k);
 }
@@ -238,7 +238,7 @@ TEST(FresnelIdentity, SinglePrecisionFollowsDouble) {
 
 TEST(FresnelIdentity, BrewstersAngleLeavesOnlyTheSComponent) {
   for (const double n : {0.7, 1.33, 1.5, 2.0}) {
-    const CDReflectances R = fresnelReflectances(brewsterAngle(n), n);
+    const Reflectances R = fresnelReflectances(brewsterAngle(n), n);
     EXPECT_NEAR(R.Rp, 0, 1e-16);
     EXPECT_NEAR(R.dop(), 1, rounding);
     EXPECT_NEAR(brewsterAngle(n) + refractedAngle(brewsterAngle(n), n), pi / 2, 1e-15);
@@ -262,18 +262,18 @@ RC_GTEST_PROP(FresnelIdentity, PseudoBrewsterAngleHasTheLeastRp, ()) {
 
 TEST(FresnelIdentity, RefusesWhatIsNoBoundary) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(fresnelReflectionMatrix(-0.1, 1.5), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(1.6, 1.5), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(nan, 1.5), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(0.1, nan), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(0.1, -1.5), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(0.1, 1.5, -1), CDMathError);
-  EXPECT_THROW(fresnelReflectionMatrix(0.1, 0, 0), CDMathError);
-  EXPECT_THROW(fresnelTransmissionMatrix(0.1, 0), CDMathError);
-  EXPECT_THROW(refractedAngle(1.0, 0.5), CDMathError);
-  EXPECT_THROW(criticalAngle(1.5), CDMathError);
-  EXPECT_THROW(brewsterAngle(0), CDMathError);
-  EXPECT_THROW(pseudoBrewsterAngle(0, 1), CDMathError);
+  EXPECT_THROW(fresnelReflectionMatrix(-0.1, 1.5), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(1.6, 1.5), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(nan, 1.5), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(0.1, nan), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(0.1, -1.5), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(0.1, 1.5, -1), MathError);
+  EXPECT_THROW(fresnelReflectionMatrix(0.1, 0, 0), MathError);
+  EXPECT_THROW(fresnelTransmissionMatrix(0.1, 0), MathError);
+  EXPECT_THROW(refractedAngle(1.0, 0.5), MathError);
+  EXPECT_THROW(criticalAngle(1.5), MathError);
+  EXPECT_THROW(brewsterAngle(0), MathError);
+  EXPECT_THROW(pseudoBrewsterAngle(0, 1), MathError);
   EXPECT_TRUE(std::isnan(at(nan, 1.5, 0).sum));  // the inner loop passes a NaN on
 }
 

@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "Worlds.hpp"
-#include "imaging/ImportanceSampling.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/Emission.hpp"
+#include "malus/render/ImportanceSampling.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/Emission.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -22,20 +22,20 @@ using Model = std::shared_ptr<const CDBRDFModel>;
 Model matt(double reflectance) {
   return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
 }
-Model facets(double n, double k, double sigma, CDDiffuseTerm diffuse = CDDiffuseTerm::none) {
+Model facets(double n, double k, double sigma, DiffuseTerm diffuse = DiffuseTerm::none) {
   const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
   return std::make_shared<BRDFTorranceSparrow>(all(n), all(k), all(sigma),
-                                               CDTorranceSparrowOptions{.diffuse = diffuse});
+                                               TorranceSparrowOptions{.diffuse = diffuse});
 }
 Quad floorOf(const Model& model, double half = 1) {
   return {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model};
 }
-CDWorld plate(const Model& model) { return worldOf({floorOf(model)}, uniformSky(1)); }
+World plate(const Model& model) { return worldOf({floorOf(model)}, uniformSky(1)); }
 
 // As bright everywhere as the uniform sky, without saying so: sampling by the sky's density has its turn.
-class EvenSky : public CDSky {
+class EvenSky : public Sky {
  public:
-  EvenSky() : CDSky(oneBand()) {}
+  EvenSky() : Sky(oneBand()) {}
   void radiance(const CDVector&, CDSpectralVector<CDStokesVector>& out) const override {
     out[0] = CDStokesVector(1);
   }
@@ -45,14 +45,14 @@ class EvenSky : public CDSky {
 
 struct Candidate {
   const char* name;
-  CDRadiometryOptions options;
+  RadiometryOptions options;
   bool grid;  // a fixed set of directions: may be biased, and must then be reported
 };
 const std::vector<Candidate>& candidates() {
-  using enum CDSampling;
+  using enum Sampling;
   static const std::vector<Candidate> all{
-      {"random, exact", {.sampling = random, .solid_angle = CDSolidAngle::exact}, false},
-      {"random, equal", {.sampling = random, .solid_angle = CDSolidAngle::equal}, false},
+      {"random, exact", {.sampling = random, .solid_angle = SolidAngle::exact}, false},
+      {"random, equal", {.sampling = random, .solid_angle = SolidAngle::equal}, false},
       {"grid", {.sampling = grid}, true},
       {"grid-rotated", {.sampling = gridRotated}, true},
       {"adaptive", {.sampling = adaptive}, true},
@@ -69,12 +69,12 @@ const std::vector<int> counts{2,  3,  4,  5,  6,  7,  8,  9,  10, 11,  12,  13, 
 std::uint64_t pixelsFor(int rays) {
   return std::max<std::uint64_t>(16, 40000 / static_cast<std::uint64_t>(rays - 1));
 }
-const CDRadiometry::Ray aslant = looking({0.1, 0.2, 0}, {0.5, 0.2, 1}, {0, 1, 0});
+const Radiometry::Ray aslant = looking({0.1, 0.2, 0}, {0.5, 0.2, 1}, {0, 1, 0});
 
 // Inside of a globe, radius 1, whose cap above the opening is missing: all form factors are areas.
-CDWorld globe(double opening_rad, const Model& model) {
+World globe(double opening_rad, const Model& model) {
   constexpr std::uint32_t rows = 60, columns = 120;
-  CDMesh mesh;
+  Mesh mesh;
   mesh.facets = mesh.materials = {"globe"};
   for (std::uint32_t i = 0; i <= rows; ++i)
     for (std::uint32_t j = 0; j < columns; ++j)
@@ -86,26 +86,26 @@ CDWorld globe(double opening_rad, const Model& model) {
       mesh.triangles.push_back({a, b + columns, a + columns, 0, 0});
       mesh.triangles.push_back({a, b, b + columns, 0, 0});
     }
-  CDGeometryBuilder builder;
+  GeometryBuilder builder;
   builder.addMesh(mesh, {});
-  CDWorld world;
+  World world;
   world.grid = oneBand();
   world.geometry = std::move(builder).build();
   world.materials = {{"globe", model}};
   world.sky = uniformSky(1);
   return world;
 }
-const CDRadiometry::Ray into = looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0});
+const Radiometry::Ray into = looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0});
 
-bool reported(const CDWorld& world, const CDRadiometryOptions& options) {
-  return trySampling(world, options).all_bounces > CDSamplingTrial::most_bias;
+bool reported(const World& world, const RadiometryOptions& options) {
+  return trySampling(world, options).all_bounces > SamplingTrial::most_bias;
 }
 }  // namespace
 
 // The criterion, before any number: |S0 - 1| <= 1 % (beside 5 standard errors of chance), or the user is told so. And he is not told
 // without cause: what is reported is off by more than 1 %. The reported numbers themselves are means over turns.
 TEST(FurnaceInvariant, AFlatWhiteCardIsWhiteOrReported) {
-  const CDWorld world = plate(matt(1));
+  const World world = plate(matt(1));
   std::size_t biased = 0;
   for (Candidate candidate : candidates())
     for (const int rays : counts) {
@@ -114,10 +114,10 @@ TEST(FurnaceInvariant, AFlatWhiteCardIsWhiteOrReported) {
       const double off = std::abs(seen.mean[0] - 1), chance = 5 * seen.error[0];
       if (reported(world, candidate.options)) {
         EXPECT_TRUE(candidate.grid) << candidate.name << " " << rays;
-        EXPECT_GT(off, CDSamplingTrial::most_bias - chance) << candidate.name << " " << rays;
+        EXPECT_GT(off, SamplingTrial::most_bias - chance) << candidate.name << " " << rays;
         ++biased;
       } else {
-        EXPECT_LT(off, CDSamplingTrial::most_bias + chance) << candidate.name << " " << rays;
+        EXPECT_LT(off, SamplingTrial::most_bias + chance) << candidate.name << " " << rays;
         EXPECT_LT(chance, 0.03) << "the comparison means something";
       }
     }
@@ -129,7 +129,7 @@ TEST(FurnaceIdentity, ImportanceSamplingIsExactOnAWhiteCard) {
   for (const bool sobol : {true, false})
     for (const int rays : counts)
       EXPECT_NEAR(estimate(plate(matt(1)),
-                           {.sampling = CDSampling::importance, .rays = {rays}, .sobol = sobol},
+                           {.sampling = Sampling::importance, .rays = {rays}, .sobol = sobol},
                            aslant, 4)
                       .mean[0],
                   1, 1e-6)
@@ -138,13 +138,13 @@ TEST(FurnaceIdentity, ImportanceSamplingIsExactOnAWhiteCard) {
 
 // Half of the directions drawn from the sky: unbiased, and no more than that.
 TEST(FurnaceInvariant, AnEvenSkyThatDoesNotSaySoIsEvenAsWell) {
-  const CDWorld world = worldOf({floorOf(matt(1))}, std::make_shared<EvenSky>());
+  const World world = worldOf({floorOf(matt(1))}, std::make_shared<EvenSky>());
   for (const bool sobol : {true, false})
     for (const bool mis : {true, false})
       for (const int rays : {2, 3, 8, 17, 64, 91}) {
         const Estimate seen = estimate(
             world,
-            {.sampling = CDSampling::importance, .rays = {rays}, .sobol = sobol, .mis = mis},
+            {.sampling = Sampling::importance, .rays = {rays}, .sobol = sobol, .mis = mis},
             aslant, pixelsFor(rays));
         EXPECT_NEAR(seen.mean[0], 1, 5 * seen.error[0] + 1e-6) << rays << sobol << mis;
         EXPECT_LT(5 * seen.error[0], 0.02);
@@ -155,13 +155,13 @@ TEST(FurnaceInvariant, AnEvenSkyThatDoesNotSaySoIsEvenAsWell) {
 // stand for the globe: 2e-3.
 TEST(FurnaceInvariant, AHollowReturnsWhatItMustReflectionByReflection) {
   const double opening = 70 * degree, share = (1 - std::cos(opening)) / 2;
-  const CDWorld world = globe(opening, matt(1));
+  const World world = globe(opening, matt(1));
   for (const Candidate& candidate : candidates()) {
     if (candidate.grid) continue;
     double left = 1;
     for (std::size_t m = 1; m <= 8; ++m) {
       left *= 1 - share;
-      CDRadiometryOptions options = candidate.options;
+      RadiometryOptions options = candidate.options;
       options.rays.assign(m, 2), options.rays[0] = 33;
       const Estimate seen = estimate(world, options, into, 400);
       EXPECT_NEAR(seen.mean[0], 1 - left, 5 * seen.error[0] + 2e-3) << candidate.name << m;
@@ -183,11 +183,11 @@ TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
   const Model wall = matt(reflectance);
   std::array<Model, 6> walls;
   walls.fill(wall);
-  CDWorld box = worldOf(boxOf(walls));
-  for (CDMaterial& material : box.materials)
-    material.emission = std::make_shared<CDEmission>(*wall, temperature_K);
+  World box = worldOf(boxOf(walls));
+  for (Material& material : box.materials)
+    material.emission = std::make_shared<Emission>(*wall, temperature_K);
   const double black = planckRadiance(550, temperature_K);
-  const CDRadiometry::Ray inside{
+  const Radiometry::Ray inside{
       {0.1, 0.05, 0}, normalized({0.2, 0.7, -0.5}), {1, 0, 0}, 0, 0, 0};
   const std::vector<std::vector<int>> lists{
       {2, 2},     {91, 2}, {33, 3, 2}, {129},
@@ -195,10 +195,10 @@ TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
   std::size_t right = 0, wrong = 0;
   for (const Candidate& candidate : candidates())
     for (const auto& rays : lists) {
-      CDRadiometryOptions options = candidate.options;
+      RadiometryOptions options = candidate.options;
       options.rays = rays;
       const double expected = black * (1 - std::pow(reflectance, double(rays.size()) + 1));
-      const bool adaptive = options.sampling == CDSampling::adaptive;
+      const bool adaptive = options.sampling == Sampling::adaptive;
       if (adaptive && rays.size() > 2) continue;  // 24 directions from each hit, at least
       double paths = 1;
       for (const int count : rays) paths *= count - 1;
@@ -209,9 +209,9 @@ TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
                    chance = 5 * seen.error[0] / expected;
       if (reported(box, options)) {
         EXPECT_TRUE(candidate.grid) << candidate.name;
-        wrong += off > CDSamplingTrial::most_bias / 2;
+        wrong += off > SamplingTrial::most_bias / 2;
       } else {
-        EXPECT_LT(off, CDSamplingTrial::most_bias + chance)
+        EXPECT_LT(off, SamplingTrial::most_bias + chance)
             << candidate.name << rays[0] << rays.size();
         right += candidate.grid;
       }
@@ -219,17 +219,17 @@ TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
   EXPECT_GE(right, 6u) << "{129}, {500} and {500, 500} are right for both grids";
   EXPECT_GE(wrong, 8u) << "negative control: {2, 2}, {91, 2}, {33, 3, 2} and eight reflections "
                           "are wrong for both";
-  EXPECT_TRUE(reported(box, {.sampling = CDSampling::gridRotated, .rays = {129, 129}}));
-  EXPECT_FALSE(reported(box, {.sampling = CDSampling::gridRotated, .rays = {129}}));
+  EXPECT_TRUE(reported(box, {.sampling = Sampling::gridRotated, .rays = {129, 129}}));
+  EXPECT_FALSE(reported(box, {.sampling = Sampling::gridRotated, .rays = {129}}));
 }
 
 // A groove of two white walls at a right angle: what is missing after eight reflections is less than 0.5^8.
 TEST(FurnaceInvariant, AGrooveIsWhiteAfterEightReflections) {
-  const CDWorld world = worldOf({{{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}, matt(1)},
-                                 {{0, -9, 0}, {0, -9, 9}, {0, 9, 9}, {0, 9, 0}, matt(1)}},
-                                uniformSky(1));
+  const World world = worldOf({{{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}, matt(1)},
+                               {{0, -9, 0}, {0, -9, 9}, {0, 9, 9}, {0, 9, 0}, matt(1)}},
+                              uniformSky(1));
   const auto ray = looking({-0.4, 0.1, 0}, {-0.6, 0.2, 1}, {0, 1, 0});
-  CDRadiometryOptions options;
+  RadiometryOptions options;
   options.rays = {17, 2, 2, 2, 2, 2, 2, 2};
   const Estimate seen = estimate(world, options, ray, 1000);
   EXPECT_NEAR(seen.mean[0], 1, 5 * seen.error[0] + std::pow(0.5, 8));
@@ -247,10 +247,10 @@ TEST(FurnaceIdentity, SmoothSurfacesReflectTheSky) {
       const Model glass = facets(1.5, 0, sigma);
       const double right = glass->getDHR(zenith).at(0);
       for (const bool even : {true, false}) {
-        CDWorld world = plate(glass);
+        World world = plate(glass);
         if (!even) world.sky = std::make_shared<EvenSky>();
         const Estimate seen =
-            estimate(world, {.sampling = CDSampling::importance, .rays = {257}, .mis = false},
+            estimate(world, {.sampling = Sampling::importance, .rays = {257}, .mis = false},
                      looking({0, 0, 0}, CDVector::fromAngles(zenith, 1), {0.3, 1, 0.2}), 100);
         EXPECT_NEAR(seen.mean[0], right, 5 * seen.error[0] + 1e-4 * right)
             << sigma << " " << zenith;
@@ -274,13 +274,13 @@ TEST(FurnaceIdentity, SmoothSurfacesReflectTheirNeighbours) {
                rp = std::pow((2.25 * c - t) / (2.25 * c + t), 2);
   const CDVector viewer{-std::sin(zenith), 0, c}, mirrored{std::sin(zenith), 0, c};
   for (const double sigma : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
-    CDWorld world = worldOf({floorOf(facets(1.5, 0, sigma), 60), wall}, uniformSky(1));
-    CDRadiometryOptions options;
+    World world = worldOf({floorOf(facets(1.5, 0, sigma), 60), wall}, uniformSky(1));
+    RadiometryOptions options;
     options.rays = {33, 17};
     const Estimate mirror =
         estimate(world, options, looking({0, 0, 0}, viewer, {0, 1, 0}, 0, 0.5), 400);
     options.rays = {1025};
-    const CDRadiometry::Ray direct{{0, 0, 1e-3}, mirrored, {0, 1, 0}, 0, 0, 0};
+    const Radiometry::Ray direct{{0, 0, 1e-3}, mirrored, {0, 1, 0}, 0, 0, 0};
     const Estimate seen = estimate(world, options, direct, 16);
     const double size = seen.mean[0] * (rs + rp) / 2;
     EXPECT_NEAR(mirror.mean[0], size,
@@ -295,19 +295,19 @@ TEST(FurnaceIdentity, SmoothSurfacesReflectTheirNeighbours) {
 
 // What a fixed set of directions cannot see is named; what it can see is not.
 TEST(FurnaceInvariant, ANarrowLobeIsRefusedToDirectionsThatMissIt) {
-  const auto trial = [](double sigma, CDSampling sampling, int rays) {
+  const auto trial = [](double sigma, Sampling sampling, int rays) {
     return trySampling(plate(facets(1.5, 0, sigma)), {.sampling = sampling, .rays = {rays}});
   };
-  for (const CDSampling sampling :
-       {CDSampling::random, CDSampling::grid, CDSampling::gridRotated, CDSampling::adaptive}) {
+  for (const Sampling sampling :
+       {Sampling::random, Sampling::grid, Sampling::gridRotated, Sampling::adaptive}) {
     EXPECT_EQ(trial(1e-3, sampling, 91).unseen, "0") << int(sampling);
     EXPECT_EQ(trial(1e-6, sampling, 91).unseen, "0") << int(sampling);
     EXPECT_EQ(trial(0.2, sampling, 91).unseen, "") << int(sampling);
   }
   for (const double sigma : {0.2, 1e-3, 1e-8}) {
-    EXPECT_EQ(trial(sigma, CDSampling::importance, 2).unseen, "");
-    EXPECT_EQ(trial(sigma, CDSampling::importance, 2).all_bounces, 0);
+    EXPECT_EQ(trial(sigma, Sampling::importance, 2).unseen, "");
+    EXPECT_EQ(trial(sigma, Sampling::importance, 2).all_bounces, 0);
   }
-  EXPECT_GT(trial(0.1, CDSampling::gridRotated, 7).all_bounces, 0.01);
-  EXPECT_LT(trial(0.2, CDSampling::gridRotated, 2001).all_bounces, 0.01);
+  EXPECT_GT(trial(0.1, Sampling::gridRotated, 7).all_bounces, 0.01);
+  EXPECT_LT(trial(0.2, Sampling::gridRotated, 2001).all_bounces, 0.01);
 }

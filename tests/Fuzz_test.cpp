@@ -69,9 +69,9 @@ TEST(FuzzInvariant, RandomChoicesAreOneLineOrASoundThing) {
     }
 }
 
-// The control: a door that lets something else than CDInputError through is noticed, and so is a line that is two.
+// The control: a door that lets something else than InputError through is noticed, and so is a line that is two.
 TEST(FuzzInvariant, NegativeControlOtherExceptionsEscape) {
   EXPECT_THROW(malus::fuzzing::knock([] { throw std::out_of_range("a vector"); }),
                std::out_of_range);
-  EXPECT_EQ(malus::fuzzing::knock([] { throw malus::CDInputError({}, "a", "b", "c"); }), 0);
+  EXPECT_EQ(malus::fuzzing::knock([] { throw malus::InputError({}, "a", "b", "c"); }), 0);
 }

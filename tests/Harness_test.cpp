@@ -1,5 +1,5 @@
 // Items, claims, verdicts and what changed (nw/program/Harness.nw).
-#include "program/Harness.hpp"
+#include "malus/thesis/Harness.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,20 +19,20 @@ const std::string columns =
     "item,claim,kind,source,verdict,repeats,fit,limit,sentence,quantity,criterion\n";
 
 /// An item T0 with rows for the claims a to f, all of one kind.
-CDItem freshItem(const std::string& kind = "thesis") {
+Item freshItem(const std::string& kind = "thesis") {
   const Scratch scratch;
   std::string rows = columns;
   for (const char name : std::string("abcdef"))
     rows += std::string("T0,") + name + "," + kind + ",choice,,,,10 .. 20,sentence " + name +
             ",q," + (name == 'c' ? "within 1e-12: rounding" : "a reason") + "\n";
   put(scratch / "claims.csv", rows);
-  return CDItem("T0", "nowhere", scratch.path);
+  return Item("T0", "nowhere", scratch.path);
 }
 
-CDVerdict last(const CDItem& item) { return item.claims().back().verdict; }
+Verdict last(const Item& item) { return item.claims().back().verdict; }
 
 // what the items of a small inventory do; each states claims of its own kind
-void everyVerdict(CDItem& item) {
+void everyVerdict(Item& item) {
   item.printed("good", "1.25", 1.2512);
   item.erratum("misprint", "104.07", "102.07", 102.068, "its error column");
   item.statement("bad", false, "seen");
@@ -41,14 +41,14 @@ void everyVerdict(CDItem& item) {
   item.picture("curve", "A curve");
   item.value("answer", "42");
 }
-void throwing(CDItem& item) {
+void throwing(Item& item) {
   item.statement("first", true, "seen");
   item.table("half", {"x"}).row({1});
   throw std::runtime_error("the second half is missing");
 }
-void silent(CDItem&) {}
+void silent(Item&) {}
 
-const std::vector<CDRegisteredItem> functions{
+const std::vector<RegisteredItem> functions{
     {"T1", everyVerdict}, {"T2", throwing}, {"T3", silent}};
 
 /// "T1,good,reproduced" and the like as rows of the table of claims.
@@ -78,7 +78,7 @@ struct Data : Scratch {
         "if (term eq 'svg') set terminal svg; else set terminal pngcairo\nset output out\n"
         "set datafile separator ','\nplot 'curve.csv' using 1:2 with lines\n");
   }
-  CDRun run(std::vector<std::string> ids) const {
+  Run run(std::vector<std::string> ids) const {
     return reproduce({std::move(ids), path / "out", path}, readInventory(path), functions);
   }
 };
@@ -86,7 +86,7 @@ struct Data : Scratch {
 std::string complaint(const Data& data, const std::string& id) {
   try {
     data.run({id});
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
@@ -94,61 +94,61 @@ std::string complaint(const Data& data, const std::string& id) {
 }  // namespace
 
 TEST(HarnessIdentity, HalfAUnitOfTheLastPrintedDigitDecides) {
-  EXPECT_TRUE(CDPrinted("-66.60").meets(-66.604));
-  EXPECT_FALSE(CDPrinted("-66.60").meets(-66.606));
-  EXPECT_TRUE(CDPrinted(".0056").meets(0.00564));
-  EXPECT_FALSE(CDPrinted(".0056").meets(0.00566));
-  EXPECT_TRUE(CDPrinted("1.5e-3").meets(0.00154));
-  EXPECT_FALSE(CDPrinted("1.5e-3").meets(0.00156));
-  EXPECT_TRUE(CDPrinted("12E2").meets(1249));
-  EXPECT_FALSE(CDPrinted("12E2").meets(1251));
+  EXPECT_TRUE(Printed("-66.60").meets(-66.604));
+  EXPECT_FALSE(Printed("-66.60").meets(-66.606));
+  EXPECT_TRUE(Printed(".0056").meets(0.00564));
+  EXPECT_FALSE(Printed(".0056").meets(0.00566));
+  EXPECT_TRUE(Printed("1.5e-3").meets(0.00154));
+  EXPECT_FALSE(Printed("1.5e-3").meets(0.00156));
+  EXPECT_TRUE(Printed("12E2").meets(1249));
+  EXPECT_FALSE(Printed("12E2").meets(1251));
   EXPECT_TRUE(
-      CDPrinted("1.25").meets(1.255));  // on the boundary: either side is a rounding of ours
-  EXPECT_FALSE(CDPrinted("1.25").meets(not_a_number));
-  EXPECT_THROW((void)CDPrinted("1,25"), CDInputError);
+      Printed("1.25").meets(1.255));  // on the boundary: either side is a rounding of ours
+  EXPECT_FALSE(Printed("1.25").meets(not_a_number));
+  EXPECT_THROW((void)Printed("1,25"), InputError);
 }
 
 TEST(HarnessIdentity, PrintedAndWithin) {
-  CDItem item = freshItem();
+  Item item = freshItem();
   item.printed("a", "102.2", 102.249);
-  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  EXPECT_EQ(last(item), Verdict::reproduced);
   EXPECT_EQ(item.claims().back().ours, "102.24900");
   EXPECT_NEAR(item.claims().back().residual, 0.049, 1e-12);  // rounding
   item.printed("b", "102.2", 102.251);
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
   item.within("c", 1, 1 + 1e-13, 1e-12);
-  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  EXPECT_EQ(last(item), Verdict::reproduced);
   item.within("d", 1, 1 + 1e-11, 1e-12);
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
   item.within("e", 1, not_a_number, 1e9) /* NaN is near nothing */;
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
 }
 
 TEST(HarnessIdentity, AnErratumNeedsBothHalves) {
-  CDItem item = freshItem();
+  Item item = freshItem();
   item.erratum("a", "104.07", "102.07", 102.07, "e");
-  EXPECT_EQ(last(item), CDVerdict::erratum);
+  EXPECT_EQ(last(item), Verdict::erratum);
   item.erratum("b", "104.07", "102.07", 104.07, "the print is met after all");
-  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  EXPECT_EQ(last(item), Verdict::reproduced);
   item.erratum("c", "104.07", "102.07", 103.0, "neither is met");
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
   item.erratumStatement("d", true, true, "e");
-  EXPECT_EQ(last(item), CDVerdict::erratum);
+  EXPECT_EQ(last(item), Verdict::erratum);
   item.erratumStatement("e", false, true, "e");
-  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  EXPECT_EQ(last(item), Verdict::reproduced);
   item.erratumStatement("f", true, false, "e");
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
 }
 
 TEST(HarnessIdentity, AClaimIsStatedOnce) {
-  CDItem item = freshItem();
+  Item item = freshItem();
   item.statement("a", true, "e");
-  EXPECT_THROW(item.statement("a", true, "e"), CDInvariantError);
+  EXPECT_THROW(item.statement("a", true, "e"), InvariantError);
 }
 
 TEST(HarnessInvariant, ARunLeavesDataPicturesAndNoComplaint) {
   const Data data;
-  const CDRun run = data.run({"T1"});
+  const Run run = data.run({"T1"});
   ASSERT_EQ(run.items.size(), 1u);
   EXPECT_EQ(run.items[0].failure, "");
   EXPECT_TRUE(run.changes.empty());
@@ -162,7 +162,7 @@ TEST(HarnessInvariant, ARunLeavesDataPicturesAndNoComplaint) {
 
 TEST(HarnessInvariant, AFailureNamesItsItemAndSavesNothing) {
   const Data data;
-  const CDRun run = data.run({});
+  const Run run = data.run({});
   ASSERT_EQ(run.items.size(), 3u);  // T4 is not built
   EXPECT_EQ(run.items[1].failure, "the second half is missing");
   EXPECT_EQ(run.items[2].failure, "the item states no claim");
@@ -173,7 +173,7 @@ TEST(HarnessInvariant, AFailureNamesItsItemAndSavesNothing) {
 TEST(HarnessInvariant, APictureThatCannotBeDrawnIsAFailure) {
   const Data data;
   put(data / "plots" / "curve.gp", "plot 'no_such_file.csv'\n");
-  const CDRun run = data.run({"T1"});
+  const Run run = data.run({"T1"});
   EXPECT_EQ(run.gnuplot_missing, run.items[0].failure.empty());
   std::filesystem::remove(data / "plots" / "curve.gp");
   EXPECT_NE(data.run({"T1"}).items[0].failure.find("curve.gp"), std::string::npos);
@@ -190,40 +190,40 @@ TEST(HarnessIdentity, AnUnknownIdIsRefusedBeforeAnythingIsWritten) {
 }
 
 TEST(HarnessIdentity, AClaimWithoutARowIsRefusedBeforeItsNumberIsSeen) {
-  CDItem item = freshItem();
+  Item item = freshItem();
   try {
     item.statement("unheard-of", true, "e");
     FAIL() << "not refused";
-  } catch (const CDInvariantError& error) {
+  } catch (const InvariantError& error) {
     EXPECT_NE(std::string(error.what()).find("T0/unheard-of has no row"), std::string::npos);
   }
-  EXPECT_THROW(item.measured("unheard-of", 15), CDInvariantError);
+  EXPECT_THROW(item.measured("unheard-of", 15), InvariantError);
 }
 
 TEST(HarnessIdentity, TheToleranceOfTheCodeIsThatOfTheTable) {
-  CDItem item = freshItem();
-  EXPECT_THROW(item.within("c", 1, 1, 1e-11), CDInvariantError);
+  Item item = freshItem();
+  EXPECT_THROW(item.within("c", 1, 1, 1e-11), InvariantError);
   EXPECT_NO_THROW(item.within("d", 1, 1, 1e-11));  // its criterion is in other words
 }
 
 TEST(HarnessIdentity, ALimitOfTheTableJudges) {
-  CDItem item = freshItem();
+  Item item = freshItem();
   item.measured("a", 10);
-  EXPECT_EQ(last(item), CDVerdict::reproduced);
+  EXPECT_EQ(last(item), Verdict::reproduced);
   item.measured("b", 20.000001);
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
   item.measured("d", not_a_number);
-  EXPECT_EQ(last(item), CDVerdict::differs);
+  EXPECT_EQ(last(item), Verdict::differs);
 }
 
 TEST(HarnessIdentity, InputsAndPropertiesOfTheProgramHaveNoVerdict) {
-  CDItem input = freshItem("input"), implementation = freshItem("implementation");
+  Item input = freshItem("input"), implementation = freshItem("implementation");
   input.statement("a", true, "e");
-  EXPECT_EQ(last(input), CDVerdict::input);
+  EXPECT_EQ(last(input), Verdict::input);
   implementation.statement("a", true, "e");
-  EXPECT_EQ(last(implementation), CDVerdict::implementation);
+  EXPECT_EQ(last(implementation), Verdict::implementation);
   implementation.statement("b", false, "e");
-  EXPECT_EQ(last(implementation), CDVerdict::differs);
+  EXPECT_EQ(last(implementation), Verdict::differs);
 }
 
 TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNoticed) {
@@ -249,7 +249,7 @@ TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNot
 TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {
   const Data data("T9,gone,reproduced\n" + all_committed);
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
-  const CDRun whole = data.run({});
+  const Run whole = data.run({});
   ASSERT_EQ(whole.changes.size(), 1u);
   EXPECT_EQ(whole.changes[0].item, "T9");
 }
@@ -259,7 +259,7 @@ TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
   verdicts.replace(verdicts.find("good,reproduced"), 15, "good,differs");
   const Data data(verdicts);
   acceptVerdicts(data.run({"T1", "T2"}), data.path);
-  const CDClaimTable rows = CDClaimTable::read(data.path);
+  const ClaimTable rows = ClaimTable::read(data.path);
   ASSERT_EQ(rows.rows().size(), 5u);
   EXPECT_EQ(rows.find("T1", "good")->verdict, "reproduced");
   EXPECT_EQ(rows.find("T1", "good")->criterion, "a reason");
@@ -270,7 +270,7 @@ TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
 
 TEST(HarnessInvariant, AFunctionWithoutARowOfTheInventoryIsADefect) {
   const Data data;
-  const std::vector<CDRegisteredItem> stray{{"T7", everyVerdict}};
+  const std::vector<RegisteredItem> stray{{"T7", everyVerdict}};
   EXPECT_THROW(reproduce({{}, data / "out", data.path}, readInventory(data.path), stray),
-               CDInvariantError);
+               InvariantError);
 }

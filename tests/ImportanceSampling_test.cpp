@@ -1,5 +1,5 @@
 // Directions drawn where the light comes from (nw/imaging/ImportanceSampling.nw).
-#include "imaging/ImportanceSampling.hpp"
+#include "malus/render/ImportanceSampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "Worlds.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -29,8 +29,8 @@ std::shared_ptr<const CDBRDFModel> matt(double reflectance) {
 class WrongDensity : public BRDFTorranceSparrow {
  public:
   using BRDFTorranceSparrow::BRDFTorranceSparrow;
-  CDBRDFSample sample(const CDVector& given, double u1, double u2, double u3) const override {
-    CDBRDFSample drawn = BRDFTorranceSparrow::sample(given, u1, u2, u3);
+  BRDFSample sample(const CDVector& given, double u1, double u2, double u3) const override {
+    BRDFSample drawn = BRDFTorranceSparrow::sample(given, u1, u2, u3);
     drawn.density_per_sr *= 1.03;
     return drawn;
   }
@@ -41,9 +41,9 @@ class WrongDensity : public BRDFTorranceSparrow {
 
 // Polarised, brighter in the west, with a bright spot of a tenth of a radian about `spot`, and a sampler that
 // prefers the spot.
-class SpottedSky : public CDSky {
+class SpottedSky : public Sky {
  public:
-  explicit SpottedSky(double brightness) : CDSky(oneBand()), brightness_(brightness) {}
+  explicit SpottedSky(double brightness) : Sky(oneBand()), brightness_(brightness) {}
   void radiance(const CDVector& d, CDSpectralVector<CDStokesVector>& out) const override {
     const double s0 = 1 - 0.5 * d.x + (dot(d, spot) > cosine ? brightness_ : 0);
     out[0] = CDStokesVector(s0, 0.3 * s0 * d.x, 0.4 * s0 * d.y, 0.1 * s0 * d.x * d.y);
@@ -52,18 +52,17 @@ class SpottedSky : public CDSky {
   std::string description() const override { return "a sky for tests"; }
   Sample sample(double u1, double u2) const override {
     if (u1 >= 0.5) {
-      const Sample plain = CDSky::sample(2 * u1 - 1, u2);
+      const Sample plain = Sky::sample(2 * u1 - 1, u2);
       return {plain.to_sky, density(plain.to_sky)};
     }
     const double z = 1 - 2 * u1 * (1 - cosine), radius = std::sqrt(1 - z * z);
-    const CDSurfaceAxes axes(spot);
+    const SurfaceAxes axes(spot);
     const CDVector d =
         axes.toWorld({radius * std::cos(2 * pi * u2), radius * std::sin(2 * pi * u2), z});
     return {d, density(d)};
   }
   double density(const CDVector& d) const override {
-    return 0.5 * CDSky::density(d) +
-           (dot(d, spot) > cosine ? 0.5 / (2 * pi * (1 - cosine)) : 0);
+    return 0.5 * Sky::density(d) + (dot(d, spot) > cosine ? 0.5 / (2 * pi * (1 - cosine)) : 0);
   }
 
  private:
@@ -73,25 +72,25 @@ class SpottedSky : public CDSky {
 };
 
 // A floor and a steep wall beside it, both 2 m wide.
-CDWorld corner(std::shared_ptr<const CDBRDFModel> floor,
-               std::shared_ptr<const CDBRDFModel> wall, std::shared_ptr<const CDSky> sky) {
-  CDWorld world = worldOf({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, floor},
-                           {{1, -1, 0}, {1.4, -1, 1.5}, {1.4, 1, 1.5}, {1, 1, 0}, wall}},
-                          std::move(sky));
-  world.sun.emplace(CDSun{normalized(CDVector{-0.5, 0.2, 0.8}), spectrumOf(3.0)});
+World corner(std::shared_ptr<const CDBRDFModel> floor, std::shared_ptr<const CDBRDFModel> wall,
+             std::shared_ptr<const Sky> sky) {
+  World world = worldOf({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, floor},
+                         {{1, -1, 0}, {1.4, -1, 1.5}, {1.4, 1, 1.5}, {1, 1, 0}, wall}},
+                        std::move(sky));
+  world.sun.emplace(Sun{normalized(CDVector{-0.5, 0.2, 0.8}), spectrumOf(3.0)});
   return world;
 }
 
-CDRadiometryOptions importance(std::vector<int> rays, bool sobol = true, bool mis = true) {
-  CDRadiometryOptions options;
-  options.sampling = CDSampling::importance;
+RadiometryOptions importance(std::vector<int> rays, bool sobol = true, bool mis = true) {
+  RadiometryOptions options;
+  options.sampling = Sampling::importance;
   options.rays = std::move(rays), options.sobol = sobol, options.mis = mis;
   return options;
 }
 
-CDRadiometryOptions atRandom(std::vector<int> rays) {
-  CDRadiometryOptions options;
-  options.sampling = CDSampling::random;
+RadiometryOptions atRandom(std::vector<int> rays) {
+  RadiometryOptions options;
+  options.sampling = Sampling::random;
   options.rays = std::move(rays), options.seed = 77;
   return options;
 }
@@ -106,7 +105,7 @@ double deviation(const Estimate& a, const Estimate& b) {
   return largest;
 }
 
-const CDRadiometry::Ray corner_ray = looking({0.6, 0.1, 0}, {-0.5, 0.1, 0.8}, {0, -1, 0.1});
+const Radiometry::Ray corner_ray = looking({0.6, 0.1, 0}, {-0.5, 0.1, 0.8}, {0, -1, 0.1});
 }  // namespace
 
 // Ten comparisons of four components: 40 tests at one in a million all told are 5.5 standard errors each. Random
@@ -116,7 +115,7 @@ constexpr double five_and_a_half = 5.5;
 TEST(ImportanceSamplingInvariant, MeansAreThoseOfRandomDirections) {
   const auto sky = std::make_shared<SpottedSky>(20);
   for (const double sigma : {0.1, 0.3}) {
-    const CDWorld world = corner(copper(sigma), copper(0.2), sky);
+    const World world = corner(copper(sigma), copper(0.2), sky);
     const Estimate random = estimate(world, atRandom({2001, 1}), corner_ray, 100);
     for (const bool sobol : {false, true})
       for (const bool mis : {false, true}) {
@@ -131,7 +130,7 @@ TEST(ImportanceSamplingInvariant, MeansAreThoseOfRandomDirections) {
 }
 
 TEST(ImportanceSamplingInvariant, MeansOfTwoBouncesAreThoseOfRandomDirections) {
-  const CDWorld world = corner(copper(0.2), matt(0.6), std::make_shared<SpottedSky>(5));
+  const World world = corner(copper(0.2), matt(0.6), std::make_shared<SpottedSky>(5));
   const Estimate random = estimate(world, atRandom({400, 20}), corner_ray, 100);
   EXPECT_LT(deviation(estimate(world, importance({12, 5}), corner_ray, 1500), random),
             five_and_a_half);
@@ -143,8 +142,8 @@ TEST(ImportanceSamplingInvariant, MeansOfTwoBouncesAreThoseOfRandomDirections) {
 TEST(ImportanceSamplingInvariant, NegativeControlADensityWrongByThreePerCentIsSeen) {
   const CDSpectralVector<double> n(oneBand(), 0.405), k(oneBand(), 2.95), sigma(oneBand(), 0.2);
   const auto sky = std::make_shared<SpottedSky>(5);
-  const CDWorld right = corner(copper(0.2), copper(0.2), sky);
-  const CDWorld wrong = corner(std::make_shared<WrongDensity>(n, k, sigma), copper(0.2), sky);
+  const World right = corner(copper(0.2), copper(0.2), sky);
+  const World wrong = corner(std::make_shared<WrongDensity>(n, k, sigma), copper(0.2), sky);
   const Estimate random = estimate(right, atRandom({2001, 1}), corner_ray, 400);
   EXPECT_GT(deviation(estimate(wrong, importance({34, 1}), corner_ray, 4000), random),
             five_and_a_half);
@@ -153,9 +152,9 @@ TEST(ImportanceSamplingInvariant, NegativeControlADensityWrongByThreePerCentIsSe
 // The converged uniform grid: its own error is taken from what a grid of twice as many directions changes, and
 // falls at least as fast as 1/N, so that twice the change bounds what is left.
 TEST(ImportanceSamplingInvariant, MeansAreThoseOfTheConvergedGrid) {
-  const CDWorld world = corner(copper(0.3), copper(0.2), uniformSky(0.5));
-  CDRadiometryOptions grid;
-  grid.sampling = CDSampling::gridRotated;
+  const World world = corner(copper(0.3), copper(0.2), uniformSky(0.5));
+  RadiometryOptions grid;
+  grid.sampling = Sampling::gridRotated;
   grid.rays = {2001, 1};
   const Estimate half = estimate(world, grid, corner_ray, 64);
   grid.rays = {4001, 1};
@@ -170,7 +169,7 @@ TEST(ImportanceSamplingInvariant, MeansAreThoseOfTheConvergedGrid) {
 
 // The bright spot over a matt floor: 33 directions of the cosine lobe meet its 0.03 sr by chance.
 TEST(ImportanceSamplingInvariant, TheSkysDensityHelpsWhereTheSkyIsUneven) {
-  const CDWorld world = corner(matt(0.5), matt(0.5), std::make_shared<SpottedSky>(100));
+  const World world = corner(matt(0.5), matt(0.5), std::make_shared<SpottedSky>(100));
   const double with = estimate(world, importance({34, 1}), corner_ray, 400).error[0];
   const double without =
       estimate(world, importance({34, 1}, true, false), corner_ray, 400).error[0];
@@ -178,7 +177,7 @@ TEST(ImportanceSamplingInvariant, TheSkysDensityHelpsWhereTheSkyIsUneven) {
 }
 
 TEST(ImportanceSamplingInvariant, ScrambledPointsAreQuieter) {
-  const CDWorld world = corner(copper(0.2), copper(0.2), uniformSky(1));
+  const World world = corner(copper(0.2), copper(0.2), uniformSky(1));
   const double sobol = estimate(world, importance({65, 1}), corner_ray, 400).error[0];
   const double random = estimate(world, importance({65, 1}, false), corner_ray, 400).error[0];
   EXPECT_LT(sobol, random / 1.5);
@@ -188,9 +187,9 @@ TEST(ImportanceSamplingInvariant, ScrambledPointsAreQuieter) {
 TEST(ImportanceSamplingIdentity, MattSurfaceGivesEveryDirectionTheSameWeight) {
   const auto brdf = matt(0.5);
   const auto sky = uniformSky(1);
-  const CDSurfaceAxes axes({0, 0, 1});
-  CDHemisphereRays rays;
-  CDSobolReader points(CDSobolPoints(1), 3);
+  const SurfaceAxes axes({0, 0, 1});
+  HemisphereRays rays;
+  SobolReader points(SobolPoints(1), 3);
   importanceSampling({*brdf, *sky, axes, {0.6, 0, 0.8}, 1}, 50, points, 0, rays);
   ASSERT_EQ(rays.size(), 50u);
   for (const float weight : rays.weight) EXPECT_FLOAT_EQ(weight, float(pi / 50));
@@ -199,9 +198,9 @@ TEST(ImportanceSamplingIdentity, MattSurfaceGivesEveryDirectionTheSameWeight) {
 TEST(ImportanceSamplingIdentity, AViewerInThePlaneOfTheSurfaceGetsNothing) {
   const auto brdf = copper(0.2);
   const auto sky = uniformSky(1);
-  const CDSurfaceAxes axes({0, 0, 1});
-  CDHemisphereRays rays;
-  CDSobolReader points(CDSobolPoints(1), 3);
+  const SurfaceAxes axes({0, 0, 1});
+  HemisphereRays rays;
+  SobolReader points(SobolPoints(1), 3);
   importanceSampling({*brdf, *sky, axes, {1, 0, 0}, 1}, 50, points, 0, rays);
   EXPECT_EQ(rays.size(), 0u);
 }
@@ -215,10 +214,10 @@ TEST(ImportanceSamplingIdentity, PointsOfPathsFollowEachOther) {
 }
 
 TEST(ImportanceSamplingInvariant, AnswersDependOnTheRayAlone) {
-  const CDWorld world = corner(copper(0.2), copper(0.2), std::make_shared<SpottedSky>(5));
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                importance({20, 4}));
-  std::vector<CDRadiometry::Ray> many(7, corner_ray);
+  const World world = corner(copper(0.2), copper(0.2), std::make_shared<SpottedSky>(5));
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                              importance({20, 4}));
+  std::vector<Radiometry::Ray> many(7, corner_ray);
   for (std::size_t i = 0; i < many.size(); ++i) many[i].pixel = i;
   std::vector<double> together(many.size() * 4), alone(4);
   radiometry.radiance(many, together);

@@ -1,5 +1,5 @@
 // Opening, sizes and names of files that come from others (nw/light/InputFiles.nw).
-#include "light/InputFiles.hpp"
+#include "malus/base/InputFiles.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "Scratch.hpp"
-#include "light/CDTable.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 
@@ -18,7 +18,7 @@ template <class Do>
 std::string complaint(const Do& act) {
   try {
     act();
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "accepted";
@@ -52,7 +52,7 @@ TEST(InputFilesIdentity, OnlyRegularFilesAreOpened) {
   EXPECT_TRUE(why("loop").starts_with("cannot be looked at")) << why("loop");
   EXPECT_TRUE(why(std::string(5000, 'x')).starts_with("cannot be looked at"));
   // a pipe that nobody writes to would keep a reader for ever
-  EXPECT_NE(complaint([&] { CDTable::read(scratch / "pipe"); }).find("is a pipe"),
+  EXPECT_NE(complaint([&] { Table::read(scratch / "pipe"); }).find("is a pipe"),
             std::string::npos);
 }
 
@@ -117,7 +117,7 @@ TEST(InputFilesIdentity, MalformedSequencesEndWhereTheyBegin) {
 }
 
 TEST(InputFilesIdentity, NamesAreUTF8WithoutControlCharactersAndOfALine) {
-  const CDInputPlace place{"m.obj", 3, "g"};
+  const InputPlace place{"m.obj", 3, "g"};
   const auto said = [&](const std::string& name) {
     return complaint([&] { requireName(name, place); });
   };
@@ -137,12 +137,12 @@ TEST(InputFilesIdentity, NamesAreUTF8WithoutControlCharactersAndOfALine) {
 TEST(InputFilesIdentity, ALongValueIsCutBetweenLettersAndEveryMessageIsUTF8) {
   const std::string long_value(10'000'000, '7');
   const std::string message =
-      CDInputError({"f", 1, long_value}, long_value, long_value, "r").what();
+      InputError({"f", 1, long_value}, long_value, long_value, "r").what();
   EXPECT_LT(message.size(), 3000u);
   for (std::size_t shift = 0; shift < 4; ++shift) {
     std::string letters(shift, 'a');
     for (int i = 0; i < 300; ++i) letters += "\U0001F30D";
-    const std::string what = CDInputError({"f", 1, "k"}, letters, "is bad", "mend it").what();
+    const std::string what = InputError({"f", 1, "k"}, letters, "is bad", "mend it").what();
     EXPECT_EQ(endOfUTF8(what), std::string::npos);
     EXPECT_EQ(what.find("\\x"), std::string::npos) << what;
     EXPECT_NE(what.find("...: is bad"), std::string::npos);

@@ -8,42 +8,41 @@
 #include <string>
 
 #include "Scratch.hpp"
-#include "light/CDTable.hpp"
-#include "program/Harness.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/thesis/Harness.hpp"
 
 /// The item after its function ran, on the committed printed values unless `data` says otherwise.
-inline malus::CDItem ran(const std::string& id, malus::CDItemFunction function,
-                         const std::filesystem::path& data = "validation") {
+inline malus::Item ran(const std::string& id, malus::ItemFunction function,
+                       const std::filesystem::path& data = "validation") {
   const Scratch scratch;  // an item may write files of its own
-  malus::CDItem item(id, scratch.path, data);
+  malus::Item item(id, scratch.path, data);
   function(item);
   return item;
 }
 
 /// The verdict, where a label says only that the claim holds.
-inline malus::CDVerdict heldOr(malus::CDVerdict verdict) {
-  return verdict == malus::CDVerdict::input || verdict == malus::CDVerdict::implementation
-             ? malus::CDVerdict::reproduced
+inline malus::Verdict heldOr(malus::Verdict verdict) {
+  return verdict == malus::Verdict::input || verdict == malus::Verdict::implementation
+             ? malus::Verdict::reproduced
              : verdict;
 }
 
 /// Names of the claims with this verdict; inputs and properties of the program hold if reproduced.
-inline std::set<std::string> named(const malus::CDItem& item, malus::CDVerdict verdict) {
+inline std::set<std::string> named(const malus::Item& item, malus::Verdict verdict) {
   std::set<std::string> names;
-  for (const malus::CDClaim& claim : item.claims())
+  for (const malus::Claim& claim : item.claims())
     if (heldOr(claim.verdict) == verdict) names.insert(claim.name);
   return names;
 }
 
-inline std::map<std::string, malus::CDVerdict> verdictsOf(const malus::CDItem& item) {
-  std::map<std::string, malus::CDVerdict> verdicts;
-  for (const malus::CDClaim& claim : item.claims())
-    verdicts[claim.name] = heldOr(claim.verdict);
+inline std::map<std::string, malus::Verdict> verdictsOf(const malus::Item& item) {
+  std::map<std::string, malus::Verdict> verdicts;
+  for (const malus::Claim& claim : item.claims()) verdicts[claim.name] = heldOr(claim.verdict);
   return verdicts;
 }
 
 /// The numbers that an item leaves for the book's prose.
-inline std::map<std::string, std::string> valuesOf(const malus::CDItem& item) {
+inline std::map<std::string, std::string> valuesOf(const malus::Item& item) {
   std::map<std::string, std::string> values;
   for (const auto& [name, text] : item.values()) values[name] = text;
   return values;

@@ -1,6 +1,6 @@
 // The tester of appendix A is itself tested here (nw/light/MathTester.nw,
 // nw/program/mathtester.nw).
-#include "light/MathTester.hpp"
+#include "malus/light/MathTester.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -19,7 +19,7 @@ using namespace malus;
 
 namespace {
 // The numbers that an answer carries: one for an unpolarised value, four or sixteen otherwise.
-std::vector<double> carried(const CDMathValue& value) {
+std::vector<double> carried(const MathValue& value) {
   if (const auto* s = std::get_if<CDStokesVector>(&value))
     return {s->data(), s->data() + (s->isPolarized() ? 4 : 1)};
   if (const auto* m = std::get_if<CDMuellerMatrix>(&value))
@@ -39,7 +39,7 @@ struct Plain {
   std::array<long double, 16> v{};
 };
 
-Plain plain(const CDMathValue& value) {
+Plain plain(const MathValue& value) {
   if (const auto* f = std::get_if<double>(&value)) return {'f', {*f}};
   const bool vector = std::holds_alternative<CDStokesVector>(value);
   const std::vector<double> all = carried(value);
@@ -72,7 +72,7 @@ Plain compute(const Plain& a, char sign, const Plain& b) {
 }
 
 // The expected answer of "x op y" agrees with plain algebra to a unit of its 17th digit.
-bool agreesWithPlainAlgebra(const CDMathTest& test, char sign, const std::string& x,
+bool agreesWithPlainAlgebra(const MathTest& test, char sign, const std::string& x,
                             const std::string& y) {
   const auto operand = [&](const std::string& name) {
     for (const auto& [known, value] : test.operands)
@@ -100,7 +100,7 @@ Answer run(const std::string& arguments) {
 }  // namespace
 
 TEST(MathTesterPublished, EveryTestOfTheAppendixPasses) {
-  for (const CDMathTest& test : runMathTests())
+  for (const MathTest& test : runMathTests())
     EXPECT_TRUE(test.passed) << test.number << ' ' << test.operation << ": expected "
                              << toText(test.expected) << ", computed " << toText(test.computed);
 }
@@ -121,8 +121,8 @@ TEST(MathTesterPublished, EveryOperationPrintedInTheAppendixIsThere) {
   const auto tests = runMathTests();
   for (const auto& [section, operations] : appendix) {
     std::vector<std::string> ours;
-    for (const CDMathTest& test : tests)
-      if (test.section == section && test.origin == CDMathOrigin::listed)
+    for (const MathTest& test : tests)
+      if (test.section == section && test.origin == MathOrigin::listed)
         ours.push_back(test.operation);
     EXPECT_TRUE(
         std::is_permutation(ours.begin(), ours.end(), operations.begin(), operations.end()))
@@ -130,14 +130,14 @@ TEST(MathTesterPublished, EveryOperationPrintedInTheAppendixIsThere) {
   }
   for (const char* function : {"getDOP()", "getDOLP()", "getDOCP()", "==", "!=", "getScalar()",
                                "getStokes(", "getMueller(", "demote()", "rotate("})
-    EXPECT_TRUE(std::any_of(tests.begin(), tests.end(), [&](const CDMathTest& test) {
+    EXPECT_TRUE(std::any_of(tests.begin(), tests.end(), [&](const MathTest& test) {
       return test.section == "A.2.6" && test.operation.find(function) != std::string::npos;
     })) << function;
 }
 
 TEST(MathTesterPublished, TheAdditionsAreTheSubtractionsWithAnotherSign) {
   std::set<std::string> sums, differences;
-  for (const CDMathTest& test : runMathTests()) {
+  for (const MathTest& test : runMathTests()) {
     if (test.section == "A.2.2") sums.insert(test.operation);
     if (test.section == "A.2.3")
       differences.insert(std::regex_replace(test.operation, std::regex("-"), "+"));
@@ -157,7 +157,7 @@ TEST(MathTesterPublished, TheDataAreThoseOfSectionA1) {
 }
 
 TEST(MathTesterInvariant, EveryAnswerObeysTheRuleOfSectionA1) {
-  for (const CDMathTest& test : runMathTests()) {
+  for (const MathTest& test : runMathTests()) {
     EXPECT_TRUE(obeysTheRule(carried(test.expected)))
         << test.operation << toText(test.expected);
     for (const auto& operand : test.operands)
@@ -181,7 +181,7 @@ TEST(MathTesterInvariant, TheTwoOrdersOfTheProductShareNoElement) {
 TEST(MathTesterIdentity, ExpectedAnswersAgreeWithPlainAlgebra) {
   const std::regex binary(R"((\w+) ([-+*/]) (\w+))");
   int checked = 0;
-  for (const CDMathTest& test : runMathTests()) {
+  for (const MathTest& test : runMathTests()) {
     std::smatch match;
     if (!std::regex_match(test.operation, match, binary)) continue;
     ++checked;
@@ -192,7 +192,7 @@ TEST(MathTesterIdentity, ExpectedAnswersAgreeWithPlainAlgebra) {
 }
 
 TEST(MathTesterIdentity, NegativeControlPlainAlgebraSeesAnotherSign) {
-  for (const CDMathTest& test : runMathTests())
+  for (const MathTest& test : runMathTests())
     if (test.operation == "psv1 - psv2") {
       EXPECT_TRUE(agreesWithPlainAlgebra(test, '-', "psv1", "psv2"));
       EXPECT_FALSE(agreesWithPlainAlgebra(test, '+', "psv1", "psv2"));
@@ -203,7 +203,7 @@ TEST(MathTesterIdentity, EachCorruptedExpectationIsTheOneThatFails) {
   const int count = static_cast<int>(runMathTests().size());
   for (int n = 1; n <= count; ++n) {
     const auto tests = runMathTests(n);
-    for (const CDMathTest& test : tests)
+    for (const MathTest& test : tests)
       EXPECT_EQ(test.passed, test.number != n) << test.operation;
   }
   EXPECT_THROW(runMathTests(0), std::out_of_range);

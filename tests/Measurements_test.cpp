@@ -1,12 +1,12 @@
 // Measures of curves against closed forms (nw/thesis/Measurements.nw).
-#include "thesis/Measurements.hpp"
+#include "malus/thesis/Measurements.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -16,13 +16,13 @@ constexpr double peak_tolerance = 1e-6;
 constexpr double root_tolerance =
     1e-9;  // halving; limited by the peak's height, which is relative 1e-16
 
-CDCurve gaussian(double centre, double sigma) {
+Curve gaussian(double centre, double sigma) {
   return [=](double x) { return 3.0 * std::exp(-0.5 * std::pow((x - centre) / sigma, 2)); };
 }
 }  // namespace
 
 TEST(MeasurementsIdentity, GaussianHasItsPeakAndWidth) {
-  const CDLobe lobe = measureLobe(gaussian(12.34567, 5.0), -40, 60);
+  const Lobe lobe = measureLobe(gaussian(12.34567, 5.0), -40, 60);
   EXPECT_NEAR(lobe.peak.x, 12.34567, peak_tolerance);
   EXPECT_NEAR(lobe.peak.y, 3.0, 1e-12);
   EXPECT_NEAR(lobe.width(), 2 * std::sqrt(2 * std::numbers::ln2) * 5.0, root_tolerance);
@@ -34,7 +34,7 @@ TEST(MeasurementsIdentity, NegativeControlShiftedGaussianIsSeen) {
 }
 
 TEST(MeasurementsIdentity, AnIntervalClipsTheLobe) {
-  const CDLobe lobe = measureLobe(gaussian(58, 5.0), -40, 60);
+  const Lobe lobe = measureLobe(gaussian(58, 5.0), -40, 60);
   EXPECT_TRUE(lobe.clipped_right);
   EXPECT_FALSE(lobe.clipped_left);
   EXPECT_EQ(lobe.right, 60);
@@ -57,31 +57,31 @@ TEST(MeasurementsIdentity, LocalMaximaOfASine) {
 }
 
 TEST(MeasurementsIdentity, SecondaryPeakBeyondATrough) {
-  const CDCurve two = [](double x) { return gaussian(0, 1)(x) + 0.5 * gaussian(10, 1)(x); };
-  const CDSecondaryPeak right = secondaryPeak(two, 2, 15), left = secondaryPeak(two, 8, -5);
+  const Curve two = [](double x) { return gaussian(0, 1)(x) + 0.5 * gaussian(10, 1)(x); };
+  const SecondaryPeak right = secondaryPeak(two, 2, 15), left = secondaryPeak(two, 8, -5);
   EXPECT_NEAR(right.peak.x, 10, peak_tolerance);
   EXPECT_NEAR(right.rise, 1 - two(5) / two(10),
               0.01);                            // samples, 400 of them, beside the trough
   EXPECT_NEAR(left.peak.x, 0, peak_tolerance);  // the interval may run either way
   EXPECT_EQ(secondaryPeak(gaussian(0, 1), 1, 5).rise, 0);
   // a ripple of a thousandth is measured as one
-  const CDCurve ripple = [](double x) { return 10 - x + 0.01 * std::sin(200 * x); };
+  const Curve ripple = [](double x) { return 10 - x + 0.01 * std::sin(200 * x); };
   EXPECT_LT(secondaryPeak(ripple, 0, 5).rise, 0.01);
 }
 
 TEST(MeasurementsIdentity, RootOfACosineAndRefusal) {
   EXPECT_NEAR(findRoot([](double x) { return std::cos(x); }, 0, 3), std::numbers::pi / 2,
               1e-15);
-  EXPECT_THROW(findRoot([](double) { return 1.0; }, 0, 1), CDMathError);
+  EXPECT_THROW(findRoot([](double) { return 1.0; }, 0, 1), MathError);
 }
 
 TEST(MeasurementsIdentity, LineAndItsResidual) {
-  const CDLine exact = fitLine({0, 1, 2, 3}, {1, 3, 5, 7});
+  const Line exact = fitLine({0, 1, 2, 3}, {1, 3, 5, 7});
   EXPECT_NEAR(exact.slope, 2, 1e-15);
   EXPECT_NEAR(exact.intercept, 1, 1e-15);
   EXPECT_NEAR(exact.residual, 0, 1e-15);
   // y = 0, 1, 0 at x = -1, 0, 1: slope 0 through the mean 1/3; farthest point 2/3 away
   EXPECT_NEAR(fitLine({-1, 0, 1}, {0, 1, 0}).residual, 2.0 / 3, 1e-15);
-  EXPECT_THROW(fitLine({1, 1}, {0, 1}), CDMathError);
-  EXPECT_THROW(fitLine({1}, {0}), CDMathError);
+  EXPECT_THROW(fitLine({1, 1}, {0, 1}), MathError);
+  EXPECT_THROW(fitLine({1}, {0}), MathError);
 }

@@ -1,6 +1,6 @@
 // Geometry of the facets against frames built as vectors, their statistics against integrals,
 // the sampler against chi-squared (nw/matter/Microfacets.nw).
-#include "matter/Microfacets.hpp"
+#include "malus/surface/Microfacets.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ChiSquared.hpp"
-#include "matter/Fresnel.hpp"
+#include "malus/surface/Fresnel.hpp"
 
 using namespace malus;
 using std::numbers::pi;
@@ -31,8 +31,8 @@ CDMuellerMatrix rotation(double cos2, double sin2) {
 }
 
 // What the chapter says a facet's Mueller matrix is, put together from its parts.
-CDMuellerMatrix facetMatrix(const CDBRDFGeometry& g, double n, double k) {
-  const CDFacetGeometry facet = facetGeometry(g);
+CDMuellerMatrix facetMatrix(const BRDFGeometry& g, double n, double k) {
+  const FacetGeometry facet = facetGeometry(g);
   const auto f = fresnelReflection(facet.cos_beta, facet.sin2_beta, n * n - k * k, 2 * n * k);
   const CDMuellerMatrix M(
       {f.sum, f.diff, 0, 0, f.diff, f.sum, 0, 0, 0, 0, f.re, f.im, 0, 0, -f.im, f.re});
@@ -114,23 +114,23 @@ Angles anyAngles() {
 RC_GTEST_PROP(MicrofacetsIdentity, RotationsEqualFieldsTracedThroughFramesInSpace, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
   RC_PRE(theta_i > 0 && theta_r > 0);
-  RC_PRE(facetGeometry(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi)).sin2_beta > 1e-4);
+  RC_PRE(facetGeometry(BRDFGeometry::fromAngles(theta_i, theta_r, phi)).sin2_beta > 1e-4);
   const double azimuth = *rc::gen::inRange(0, 36000) * 0.01 * degree;
   const CDMuellerMatrix seen =
-      facetMatrix(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi), 0.405, 2.95);
+      facetMatrix(BRDFGeometry::fromAngles(theta_i, theta_r, phi), 0.405, 2.95);
   RC_ASSERT(worst(seen, byFields(theta_i, theta_r, azimuth, phi, 0.405, 2.95)) < 1e-12);
 }
 
 TEST(MicrofacetsIdentity, NegativeControlTheOtherSenseOfAzimuthIsSeen) {
-  const auto g = CDBRDFGeometry::fromAngles(0.5, 0.9, 2.0);
+  const auto g = BRDFGeometry::fromAngles(0.5, 0.9, 2.0);
   EXPECT_LT(worst(facetMatrix(g, 0.405, 2.95), byFields(0.5, 0.9, 0, 2.0, 0.405, 2.95)), 1e-12);
   EXPECT_GT(worst(facetMatrix(g, 0.405, 2.95), byFields(0.5, 0.9, 0, -2.0, 0.405, 2.95)), 0.05);
 }
 
 RC_GTEST_PROP(MicrofacetsIdentity, AnglesOfTheFacetEqualThoseOfVectors, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
-  const auto g = CDBRDFGeometry::fromAngles(theta_i, theta_r, phi);
-  const CDFacetGeometry facet = facetGeometry(g);
+  const auto g = BRDFGeometry::fromAngles(theta_i, theta_r, phi);
+  const FacetGeometry facet = facetGeometry(g);
   const Vector i(g.sin_i, 0, g.cos_i), r(g.sin_r * g.cos_phi, g.sin_r * g.sin_phi, g.cos_r);
   const Vector m = (i + r).normalized();
   RC_ASSERT(std::abs(facet.cos_beta - i.dot(m)) < 1e-13);
@@ -143,7 +143,7 @@ RC_GTEST_PROP(MicrofacetsIdentity, AnglesOfTheFacetEqualThoseOfVectors, ()) {
 TEST(MicrofacetsIdentity, BackToTheSourceIsNormalIncidenceWithoutRotation) {
   for (const double theta : {0.0, 0.3, 1.2}) {
     const CDMuellerMatrix M =
-        facetMatrix(CDBRDFGeometry::fromAngles(theta, theta, 0), 0.405, 2.95);
+        facetMatrix(BRDFGeometry::fromAngles(theta, theta, 0), 0.405, 2.95);
     const double R = M.getScalar();
     const CDMuellerMatrix expected({R, 0, 0, 0, 0, R, 0, 0, 0, 0, -R, 0, 0, 0, 0, -R});
     EXPECT_LT(worst(M, expected), 1e-15) << theta;
@@ -155,10 +155,9 @@ TEST(MicrofacetsIdentity, NearlyBackToTheSourceTheRotationsKeepTheirDigits) {
   // difference counts, and the matrix is that of exact return up to 1e-12 / tan(theta).
   std::mt19937_64 random(20020607);
   std::uniform_real_distribution<double> any(-1e-12, 1e-12);
-  const CDMuellerMatrix exact =
-      facetMatrix(CDBRDFGeometry::fromAngles(0.7, 0.7, 0), 0.405, 2.95);
+  const CDMuellerMatrix exact = facetMatrix(BRDFGeometry::fromAngles(0.7, 0.7, 0), 0.405, 2.95);
   for (int trial = 0; trial < 1000; ++trial) {
-    const auto g = CDBRDFGeometry::fromAngles(0.7, 0.7 + any(random), any(random));
+    const auto g = BRDFGeometry::fromAngles(0.7, 0.7 + any(random), any(random));
     ASSERT_LT(worst(facetMatrix(g, 0.405, 2.95), exact), 1e-11);
   }
 }
@@ -166,17 +165,16 @@ TEST(MicrofacetsIdentity, NearlyBackToTheSourceTheRotationsKeepTheirDigits) {
 TEST(MicrofacetsIdentity, VerticalDirectionsKeepTheFramesThatTheAzimuthGives) {
   // A vertical ray's frame is the limit of rays of the same azimuth: 1e-9 rad off, 1e-8 apart.
   for (const auto& [ti, tr] : {std::pair{0., 0.6}, {0.6, 0.}, {0., 0.}}) {
-    const auto exact = facetMatrix(CDBRDFGeometry::fromAngles(ti, tr, 1.1), 1.3, 7.5);
+    const auto exact = facetMatrix(BRDFGeometry::fromAngles(ti, tr, 1.1), 1.3, 7.5);
     const auto near = facetMatrix(
-        CDBRDFGeometry::fromAngles(ti + (ti == 0) * 1e-9, tr + (tr == 0) * 2e-9, 1.1), 1.3,
-        7.5);
+        BRDFGeometry::fromAngles(ti + (ti == 0) * 1e-9, tr + (tr == 0) * 2e-9, 1.1), 1.3, 7.5);
     EXPECT_LT(worst(exact, near), 1e-8) << ti << " " << tr;
   }
 }
 
 TEST(MicrofacetsIdentity, GrazingDirectionsOppositeEachOther) {
-  const auto g = CDBRDFGeometry::fromDegrees(90, 90, 180);
-  const CDFacetGeometry facet = facetGeometry(g);
+  const auto g = BRDFGeometry::fromDegrees(90, 90, 180);
+  const FacetGeometry facet = facetGeometry(g);
   EXPECT_EQ(facet.cos_beta, 0);
   EXPECT_EQ(facet.sin2_beta, 1);
   EXPECT_EQ(facet.cos_alpha, 1);
@@ -184,11 +182,11 @@ TEST(MicrofacetsIdentity, GrazingDirectionsOppositeEachOther) {
   EXPECT_LT(worst(facetMatrix(g, 0.405, 2.95), CDMuellerMatrix({1, 0, 0, 0, 0, 1, 0, 0,  //
                                                                 0, 0, 1, 0, 0, 0, 0, 1})),
             1e-15);
-  EXPECT_EQ(facetFactor(CDShadowing::vGroove, g, facet, 0.2),
+  EXPECT_EQ(facetFactor(Shadowing::vGroove, g, facet, 0.2),
             std::numeric_limits<double>::infinity());
   // beside each other: a facet would have to stand upright, and there is none
-  const auto beside = CDBRDFGeometry::fromDegrees(90, 90, 90);
-  for (const auto kind : {CDShadowing::none, CDShadowing::vGroove, CDShadowing::smith})
+  const auto beside = BRDFGeometry::fromDegrees(90, 90, 90);
+  for (const auto kind : {Shadowing::none, Shadowing::vGroove, Shadowing::smith})
     EXPECT_EQ(facetFactor(kind, beside, facetGeometry(beside), 0.2), 0);
 }
 
@@ -196,12 +194,12 @@ TEST(MicrofacetsIdentity, NearlyGrazingTiltKeepsItsDigits) {
   // 4e-7 and 1e-7 rad above the horizon: tilt = half the difference. The sines hold their
   // difference of 7.5e-14 to 1.1e-16; from the cosine of the tilt not one digit would come
   // back.
-  const auto g = CDBRDFGeometry{4e-7, 1 - 8e-14, 1e-7, 1 - 5e-15, -1, 0};
+  const auto g = BRDFGeometry{4e-7, 1 - 8e-14, 1e-7, 1 - 5e-15, -1, 0};
   EXPECT_NEAR(facetGeometry(g).tan2_alpha / std::pow(1.5e-7, 2), 1, 3e-3);
 }
 
 TEST(MicrofacetsIdentity, DegreesAreExactAtQuarterTurns) {
-  const auto g = CDBRDFGeometry::fromDegrees(0, 90, -180);
+  const auto g = BRDFGeometry::fromDegrees(0, 90, -180);
   EXPECT_EQ(g.cos_i, 1);
   EXPECT_EQ(g.sin_i, 0);
   EXPECT_EQ(g.cos_r, 0);
@@ -209,7 +207,7 @@ TEST(MicrofacetsIdentity, DegreesAreExactAtQuarterTurns) {
   EXPECT_EQ(g.cos_phi, -1);
   EXPECT_EQ(g.sin_phi, 0);
   for (const double phi : {-350.0, -100.0, 10.0, 100.0, 190.0, 280.0, 730.0}) {
-    const auto h = CDBRDFGeometry::fromDegrees(20, 70, phi);
+    const auto h = BRDFGeometry::fromDegrees(20, 70, phi);
     EXPECT_NEAR(h.cos_phi, std::cos(phi * degree), 1e-14);  // 730 deg rounds to 1e-15 rad
     EXPECT_NEAR(h.sin_phi, std::sin(phi * degree), 1e-14);
   }
@@ -219,9 +217,9 @@ RC_GTEST_PROP(MicrofacetsIdentity, DirectionsGiveTheSameGeometryAsAngles, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
   RC_PRE(theta_i > 0 && theta_r > 0);
   const double azimuth = *rc::gen::inRange(0, 36000) * 0.01 * degree;
-  const auto g = CDBRDFGeometry::fromDirections(CDVector::fromAngles(theta_i, azimuth),
-                                                CDVector::fromAngles(theta_r, azimuth + phi));
-  const auto h = CDBRDFGeometry::fromAngles(theta_i, theta_r, phi);
+  const auto g = BRDFGeometry::fromDirections(CDVector::fromAngles(theta_i, azimuth),
+                                              CDVector::fromAngles(theta_r, azimuth + phi));
+  const auto h = BRDFGeometry::fromAngles(theta_i, theta_r, phi);
   RC_ASSERT(std::abs(g.cos_i - h.cos_i) + std::abs(g.sin_i - h.sin_i) < 1e-14);
   RC_ASSERT(std::abs(g.cos_r - h.cos_r) + std::abs(g.sin_r - h.sin_r) < 1e-14);
   RC_ASSERT(std::abs(g.cos_phi - h.cos_phi) + std::abs(g.sin_phi - h.sin_phi) < 1e-14);
@@ -230,9 +228,9 @@ RC_GTEST_PROP(MicrofacetsIdentity, DirectionsGiveTheSameGeometryAsAngles, ()) {
 TEST(MicrofacetsIdentity, GroovesHideFromSixtyDegreesPlusAThirdOn) {
   for (const double theta_i : {10.0, 30.0, 45.0}) {
     const auto G = [&](double theta_r) {
-      const auto g = CDBRDFGeometry::fromDegrees(theta_i, theta_r, 180);
+      const auto g = BRDFGeometry::fromDegrees(theta_i, theta_r, 180);
       const auto facet = facetGeometry(g);
-      return shadowing(CDShadowing::vGroove, facet.cos_alpha, facet.cos_beta, g.cos_i, g.cos_r,
+      return shadowing(Shadowing::vGroove, facet.cos_alpha, facet.cos_beta, g.cos_i, g.cos_r,
                        0.2);
     };
     const double onset = 60 + theta_i / 3;
@@ -253,20 +251,20 @@ TEST(MicrofacetsIdentity, SmithSeesWhatTheProjectedFacetsLeave) {
       };
       const double kink = std::max(-9., -1 / (sigma * t));
       const double area = Quadrature::integrate(facing, kink, 9., 12, 1e-13);
-      const double G1 = shadowing(CDShadowing::smith, 1, 1, std::cos(theta), 1, sigma);
+      const double G1 = shadowing(Shadowing::smith, 1, 1, std::cos(theta), 1, sigma);
       EXPECT_NEAR(G1 * area, 1, 1e-12) << sigma << " " << theta;  // quadrature
       // with the viewer at the zenith nothing is hidden from him, and both Smiths agree
-      EXPECT_NEAR(shadowing(CDShadowing::smithCorrelated, 1, 1, std::cos(theta), 1, sigma), G1,
+      EXPECT_NEAR(shadowing(Shadowing::smithCorrelated, 1, 1, std::cos(theta), 1, sigma), G1,
                   1e-15);
     }
 }
 
 RC_GTEST_PROP(MicrofacetsIdentity, FactorIsTheDensityTimesShadowingOverCosines, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
-  const auto g = CDBRDFGeometry::fromAngles(theta_i, theta_r, phi);
+  const auto g = BRDFGeometry::fromAngles(theta_i, theta_r, phi);
   const auto facet = facetGeometry(g);
-  for (const auto kind : {CDShadowing::none, CDShadowing::vGroove, CDShadowing::smith,
-                          CDShadowing::smithCorrelated}) {
+  for (const auto kind :
+       {Shadowing::none, Shadowing::vGroove, Shadowing::smith, Shadowing::smithCorrelated}) {
     const double G = shadowing(kind, facet.cos_alpha, facet.cos_beta, g.cos_i, g.cos_r, 0.3);
     const double expected = gaussianSlopes(facet.tan2_alpha, 0.3) * G / (4 * g.cos_i * g.cos_r);
     RC_ASSERT(G >= 0 && G <= 1 + 1e-15);
@@ -275,25 +273,24 @@ RC_GTEST_PROP(MicrofacetsIdentity, FactorIsTheDensityTimesShadowingOverCosines, 
 }
 
 TEST(MicrofacetsIdentity, FactorIsFiniteForAGrazingViewer) {
-  const auto grazing = CDBRDFGeometry::fromDegrees(45, 90, 180);
-  const auto nearly = CDBRDFGeometry::fromDegrees(45, 90 - 1e-7, 180);
-  for (const auto kind :
-       {CDShadowing::vGroove, CDShadowing::smith, CDShadowing::smithCorrelated}) {
+  const auto grazing = BRDFGeometry::fromDegrees(45, 90, 180);
+  const auto nearly = BRDFGeometry::fromDegrees(45, 90 - 1e-7, 180);
+  for (const auto kind : {Shadowing::vGroove, Shadowing::smith, Shadowing::smithCorrelated}) {
     const double factor = facetFactor(kind, grazing, facetGeometry(grazing), 0.3);
     EXPECT_GT(factor, 0);
     EXPECT_NEAR(facetFactor(kind, nearly, facetGeometry(nearly), 0.3) / factor, 1, 1e-6);
   }
-  const auto below = CDBRDFGeometry::fromDegrees(45, 91, 180);
-  EXPECT_EQ(facetFactor(CDShadowing::vGroove, below, facetGeometry(below), 0.3), 0);
+  const auto below = BRDFGeometry::fromDegrees(45, 91, 180);
+  EXPECT_EQ(facetFactor(Shadowing::vGroove, below, facetGeometry(below), 0.3), 0);
 }
 
 TEST(MicrofacetsIdentity, VerySmallRoughnessStaysFinite) {
-  const auto g = CDBRDFGeometry::fromDegrees(30, 30, 180);
+  const auto g = BRDFGeometry::fromDegrees(30, 30, 180);
   EXPECT_NEAR(
-      facetFactor(CDShadowing::vGroove, g, facetGeometry(g), 1e-6) * 8 * pi * 1e-12 * 0.75, 1,
+      facetFactor(Shadowing::vGroove, g, facetGeometry(g), 1e-6) * 8 * pi * 1e-12 * 0.75, 1,
       1e-9);  // tilt 1e-16 against sigma 1e-6
-  const auto off = CDBRDFGeometry::fromDegrees(30, 31, 180);
-  EXPECT_EQ(facetFactor(CDShadowing::vGroove, off, facetGeometry(off), 1e-6), 0);
+  const auto off = BRDFGeometry::fromDegrees(30, 31, 180);
+  EXPECT_EQ(facetFactor(Shadowing::vGroove, off, facetGeometry(off), 1e-6), 0);
 }
 
 TEST(MicrofacetsInvariant, FacetsCoverTheSurfaceOnce) {
@@ -310,16 +307,16 @@ TEST(MicrofacetsInvariant, FacetsCoverTheSurfaceOnce) {
 
 RC_GTEST_PROP(MicrofacetsInvariant, ReversingLightTransposesTheMatrix, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
-  const auto forth = CDBRDFGeometry::fromAngles(theta_i, theta_r, phi);
-  const auto back = CDBRDFGeometry::fromAngles(theta_r, theta_i, -phi);
+  const auto forth = BRDFGeometry::fromAngles(theta_i, theta_r, phi);
+  const auto back = BRDFGeometry::fromAngles(theta_r, theta_i, -phi);
   const CDMuellerMatrix M = facetMatrix(forth, 0.405, 2.95), B = facetMatrix(back, 0.405, 2.95);
   // reversing k turns s = z x k about and leaves p: S2 changes sign
   const std::array<double, 4> turn{1, 1, -1, 1};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       RC_ASSERT(std::abs(B.getMueller(i, j) - turn[i] * turn[j] * M.getMueller(j, i)) < 1e-12);
-  for (const auto kind : {CDShadowing::none, CDShadowing::vGroove, CDShadowing::smith,
-                          CDShadowing::smithCorrelated}) {
+  for (const auto kind :
+       {Shadowing::none, Shadowing::vGroove, Shadowing::smith, Shadowing::smithCorrelated}) {
     const double f = facetFactor(kind, forth, facetGeometry(forth), 0.3);
     RC_ASSERT(std::abs(facetFactor(kind, back, facetGeometry(back), 0.3) - f) <= 1e-12 * f);
   }
@@ -410,7 +407,7 @@ TEST(MicrofacetsInvariant, DensityOfDrawnNormalsIsTheVisibleSlopesAndIntegratesT
 
 RC_GTEST_PROP(MicrofacetsInvariant, ReflectionMapsTheDensityByFourCosines, ()) {
   const auto [theta_i, theta_r, phi] = anyAngles();
-  const auto g = CDBRDFGeometry::fromAngles(theta_i, theta_r, phi);
+  const auto g = BRDFGeometry::fromAngles(theta_i, theta_r, phi);
   const auto facet = facetGeometry(g);
   RC_PRE(facet.cos_beta > 1e-3);
   const CDVector i{g.sin_i, 0, g.cos_i}, r{g.sin_r * g.cos_phi, g.sin_r * g.sin_phi, g.cos_r};
@@ -424,10 +421,10 @@ TEST(MicrofacetsPublished, SpecularPartOfTheCopperPlate) {
   // thesis eq 7.8: theta_i 30, theta_r 40, phi 180, n .405, k 2.950, sigma .2; half a unit of
   // the last printed digit. f00 also holds the diffuse term, f33 is printed with the wrong
   // sign.
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 180);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 180);
   const auto facet = facetGeometry(g);
   const CDMuellerMatrix f =
-      facetFactor(CDShadowing::vGroove, g, facet, 0.2) * facetMatrix(g, 0.405, 2.95);
+      facetFactor(Shadowing::vGroove, g, facet, 0.2) * facetMatrix(g, 0.405, 2.95);
   EXPECT_NEAR(f.getMueller(0, 1), 0.04, 5e-3);
   EXPECT_NEAR(f.getMueller(1, 0), 0.04, 5e-3);
   EXPECT_NEAR(f.getMueller(1, 1), 1.172, 5e-4);
@@ -446,8 +443,8 @@ TEST(MicrofacetsPublished, NegativeControlTheAngleNamedInTheTextGivesNothing) {
 }
 
 TEST(MicrofacetsRegression, SixDigitsOfTheCopperPlate) {
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 180);
-  const double factor = facetFactor(CDShadowing::vGroove, g, facetGeometry(g), 0.2);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 180);
+  const double factor = facetFactor(Shadowing::vGroove, g, facetGeometry(g), 0.2);
   EXPECT_NEAR(factor, 1.38352, 5e-6);  // the chapter's example
   const CDMuellerMatrix f = factor * facetMatrix(g, 0.405, 2.95);
   EXPECT_NEAR(f.getMueller(0, 0), 1.17187, 5e-6);

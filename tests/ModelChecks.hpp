@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "DrawnDirections.hpp"
-#include "matter/BRDFSampling.hpp"
-#include "matter/CDBRDFModel.hpp"
+#include "malus/surface/CDBRDFModel.hpp"
+#include "malus/surface/DirectionSampling.hpp"
 
 namespace malus::testing {
 inline std::size_t allocations = 0;
@@ -32,13 +32,13 @@ namespace malus::testing {
 constexpr double false_alarm = 1e-6;  // of one chi-squared test; a suite makes about ten
 
 /// 150 bands, more than two blocks of 64 and no multiple of a vector's length.
-inline CDSpectralGridPtr manyBands() {
+inline SpectralGridPtr manyBands() {
   std::vector<double> nm;
   for (int i = 0; i < 150; ++i) nm.push_back(400 + 2.0 * i);
-  return CDSpectralGrid::make(nm);
+  return SpectralGrid::make(nm);
 }
 /// From low in the first band evenly to high in the last.
-inline CDSpectralVector<double> ramp(const CDSpectralGridPtr& grid, double low, double high) {
+inline CDSpectralVector<double> ramp(const SpectralGridPtr& grid, double low, double high) {
   CDSpectralVector<double> v(grid);
   for (std::size_t i = 0; i < v.size(); ++i)
     v[i] = low + (high - low) * static_cast<double>(i) / std::max(1.0, double(v.size()) - 1);
@@ -47,12 +47,12 @@ inline CDSpectralVector<double> ramp(const CDSpectralGridPtr& grid, double low, 
 
 struct Angles {
   double theta_i, theta_r, phi;  // [rad]
-  CDBRDFGeometry there() const { return CDBRDFGeometry::fromAngles(theta_i, theta_r, phi); }
-  CDBRDFGeometry back() const { return CDBRDFGeometry::fromAngles(theta_r, theta_i, -phi); }
+  BRDFGeometry there() const { return BRDFGeometry::fromAngles(theta_i, theta_r, phi); }
+  BRDFGeometry back() const { return BRDFGeometry::fromAngles(theta_r, theta_i, -phi); }
 };
 /// So many geometries at random, zenith angles up to most [rad].
 inline std::vector<Angles> someAngles(int count, double most = 1.55) {
-  CDRandom random(1815);
+  Random random(1815);
   std::vector<Angles> all;
   for (int i = 0; i < count; ++i) {
     const double a = most * random.uniform(), b = most * random.uniform();
@@ -120,7 +120,7 @@ inline void expectNoAllocation(const CDBRDFModel& model) {
       plain(model.grid(), CDStokesVector(1)), sum(model.grid());
   CDSpectralVector<CDMuellerMatrix> f(model.grid());
   sum.polarize(), f.polarize();
-  const auto g = CDBRDFGeometry::fromDegrees(30, 40, 170);
+  const auto g = BRDFGeometry::fromDegrees(30, 40, 170);
   const CDVector given = CDVector::fromAngles(0.5, 0);
   const auto ask = [&] {
     model.scatter(g, 0.1, in, sum), model.scatter(g, 0.1, plain, sum);
@@ -140,10 +140,10 @@ inline void expectScoreAndHorizon(const CDBRDFModel& model) {
   for (const Angles& angles : someAngles(10))
     EXPECT_NEAR(model.getScore(angles.there()), model.CDBRDFModel::getScore(angles.there()),
                 1e-12 * (1 + model.getScore(angles.there())));  // sums in another order
-  const auto below = CDBRDFGeometry::fromDegrees(20, 91, 0);
+  const auto below = BRDFGeometry::fromDegrees(20, 91, 0);
   EXPECT_EQ(model.getScore(below), 0);
   EXPECT_EQ(model.getBRDF(below).at(0), CDMuellerMatrix(0.0));
-  const auto nothing = CDBRDFGeometry::fromAngles(0.3, std::nan(""), 0);
+  const auto nothing = BRDFGeometry::fromAngles(0.3, std::nan(""), 0);
   EXPECT_TRUE(std::isnan(model.getBRDF(nothing).at(0).getScalar()));
 }
 
@@ -183,16 +183,16 @@ inline double expectSamplerGivesDHR(const CDBRDFModel& model) {
   double noise = 0;
   for (const double zenith : {0.2, 1.0}) {
     const CDVector given = CDVector::fromAngles(zenith, 0.0);
-    CDRandom random(5);
+    Random random(5);
     double sum = 0, squares = 0;
     constexpr int draws = 100000;
     CDSpectralVector<CDMuellerMatrix> f(model.grid());
     for (int i = 0; i < draws; ++i) {
       const double u1 = random.uniform(), u2 = random.uniform(), u3 = random.uniform();
-      const CDBRDFSample s = model.sample(given, u1, u2, u3);
+      const BRDFSample s = model.sample(given, u1, u2, u3);
       if (s.rejected()) continue;
       EXPECT_NEAR(s.density_per_sr / model.density(given, s.direction), 1, 1e-9);
-      model.evaluate(CDBRDFGeometry::fromDirections(given, s.direction), f);
+      model.evaluate(BRDFGeometry::fromDirections(given, s.direction), f);
       const double x = CDMuellerMatrix(f[0]).getScalar() * s.direction.z / s.density_per_sr;
       sum += x, squares += x * x;
     }

@@ -1,4 +1,4 @@
-// A scene may mix any of the models by name (nw/program/Models.nw, SceneMaterials.nw).
+// A scene may mix any of the models by name (nw/program/ModelRegistry.nw, SceneMaterials.nw).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "Program.hpp"
-#include "program/Render.hpp"
-#include "program/Scene.hpp"
+#include "malus/files/SceneReader.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -50,7 +50,7 @@ json mixedScene() {
 TEST(ModelsInScenesInvariant, AMixOfModelsMakesAPhysicalPicture) {
   const Scratch scratch;
   put(scratch / "s.json", mixedScene().dump(1));
-  const CDFrame frame = renderScene(readScene(scratch / "s.json"));
+  const RenderedImage frame = renderScene(readScene(scratch / "s.json"));
   int polarized = 0;
   for (std::size_t y = 0; y < frame.height; ++y)
     for (std::size_t x = 0; x < frame.width; ++x)
@@ -97,7 +97,7 @@ TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
       {"model", "layered-paint"}, {"pigment_n", 2.75}, {"radius", 110}, {"pvc", 0.1},
       {"thickness", 20},          {"sigma", 0.1}};
   put(scratch / "s.json", scene.dump(1));
-  const CDFrame frame = renderScene(readScene(scratch / "s.json"));
+  const RenderedImage frame = renderScene(readScene(scratch / "s.json"));
   for (std::size_t y = 0; y < frame.height; ++y)
     for (std::size_t x = 0; x < frame.width; ++x) {
       const double* s = frame.at(x, y, 1);
@@ -161,7 +161,7 @@ TEST(ModelsInScenesInvariant, AMeasuredSurfaceLooksLikeItsModel) {
   for (const auto& [name, material] : scene["materials"].items())
     scene["materials"][name] = metal;
   put(scratch / "s.json", scene.dump(1));
-  const CDFrame computed = renderScene(readScene(scratch / "s.json"));
+  const RenderedImage computed = renderScene(readScene(scratch / "s.json"));
   EXPECT_EQ(
       malusIn(scratch.path,
               "brdf --model torrance-sparrow --param n=0.4 --param k=2.9 --param sigma=0.3 "
@@ -171,7 +171,7 @@ TEST(ModelsInScenesInvariant, AMeasuredSurfaceLooksLikeItsModel) {
   for (const auto& [name, material] : scene["materials"].items())
     scene["materials"][name] = {{"model", "measured"}, {"file", "m.pbsdf"}};
   put(scratch / "s.json", scene.dump(1));
-  const CDFrame measured = renderScene(readScene(scratch / "s.json"));
+  const RenderedImage measured = renderScene(readScene(scratch / "s.json"));
   double difference = 0, sum = 0;
   for (std::size_t y = 0; y < 16; ++y)
     for (std::size_t x = 0; x < 16; ++x)

@@ -1,5 +1,5 @@
 // What a scene is told before it is rendered: defaults, notices and refusals of sensors and samplings
-// (nw/program/Scene.nw, nw/program/CommandRender.nw).
+// (nw/program/SceneReader.nw, nw/program/CommandRender.nw).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <string>
 
 #include "Program.hpp"
-#include "light/CDError.hpp"
-#include "program/CommandRender.hpp"
-#include "program/Render.hpp"
+#include "malus/app/CommandRender.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -46,11 +46,11 @@ json glass(double sigma) {
           {"sigma", sigma},
           {"diffuse", "none"}};
 }
-CDScene sceneOf(const json& scene) { return readSceneText(scene.dump(), "s.json", "."); }
+Scene sceneOf(const json& scene) { return readSceneText(scene.dump(), "s.json", "."); }
 std::string complaint(const json& scene) {
   try {
     sceneOf(scene);
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
@@ -60,13 +60,13 @@ void expectIn(const std::string& part, const std::string& text) {
 }
 
 // Mean pixel of each chunk in a picture, rightwards and upwards from its middle.
-std::map<char, std::pair<double, double>> chunksOf(const CDScene& scene) {
-  const CDFrame frame = renderScene(scene);
+std::map<char, std::pair<double, double>> chunksOf(const Scene& scene) {
+  const RenderedImage frame = renderScene(scene);
   std::map<char, std::pair<double, double>> middle;
   std::map<char, int> pixels;
   for (std::size_t i = 0; i < frame.truth.size(); ++i) {
     const std::uint32_t facet = frame.truth[i].facet;
-    if (facet == CDHit::nothing) continue;
+    if (facet == Hit::nothing) continue;
     const std::string& name = scene.world.geometry.facetNames()[facet];
     if (name.find('.') == std::string::npos) continue;
     auto& [right, up] = middle[name[0]];
@@ -101,7 +101,7 @@ TEST(NoticesIdentity, ThePushbroomSceneIsAMap) {
     EXPECT_GT(mirrored, 10) << "negative control: rows in the other order";
   }
   scan["platform"].erase("up");
-  const CDPose pose = sceneOf(scan).platform.at(0);
+  const Pose pose = sceneOf(scan).platform.at(0);
   EXPECT_NEAR(pose.up.x, std::sqrt(0.5), 1e-4) << "without an up, the flight's direction";
   EXPECT_NEAR(pose.up.y, std::sqrt(0.5), 1e-4);
 }
@@ -142,8 +142,8 @@ TEST(NoticesIdentity, PosesMakeOnePictureOfAScanner) {
 }
 
 TEST(NoticesIdentity, ASceneThatNamesNoSamplingHasImportance) {
-  const CDScene scene = sceneOf(plate(card, {}));
-  EXPECT_EQ(scene.radiometry.sampling, CDSampling::importance);
+  const Scene scene = sceneOf(plate(card, {}));
+  EXPECT_EQ(scene.radiometry.sampling, Sampling::importance);
   EXPECT_EQ(scene.radiometry.rays, (std::vector{33, 3, 2}));
   EXPECT_TRUE(scene.notices.empty());
   EXPECT_NEAR(renderScene(scene).at(1, 1)[0], 1, 1e-6) << "a white card under a sky of one";

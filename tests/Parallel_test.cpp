@@ -1,5 +1,5 @@
 // Work in several threads (nw/light/Parallel.nw).
-#include "light/Parallel.hpp"
+#include "malus/base/Parallel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pictures of other people's formats, looked at with nothing but the definitions of these formats.
-#include "imaging/PictureFiles.hpp"
+#include "malus/files/PictureFiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "Scratch.hpp"
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -18,7 +18,7 @@ bool isLoaded(const std::string& name) {
 }
 
 const std::vector<unsigned char> bytes(5 * 3 * 3, 77);
-CDPictureFile picture() { return {5, 3, {"R", "G", "B"}, bytes}; }
+PictureFile picture() { return {5, 3, {"R", "G", "B"}, bytes}; }
 
 unsigned bigEndian(const std::string& text, std::size_t at) {
   unsigned number = 0;
@@ -69,15 +69,15 @@ TEST(PictureFilesPublished, ExrHoldsChannelsAndWords) {
 TEST(PictureFilesInvariant, WhatCannotBeWrittenLeavesNothingBehind) {
   const Scratch scratch;
   put(scratch / "file", "no directory");
-  EXPECT_THROW(savePicture(picture(), scratch / "file/x.png"), CDInputError);
-  EXPECT_THROW(savePicture(picture(), scratch / "x.nonsense"), CDInputError);
-  CDPictureFile small = picture();
+  EXPECT_THROW(savePicture(picture(), scratch / "file/x.png"), InputError);
+  EXPECT_THROW(savePicture(picture(), scratch / "x.nonsense"), InputError);
+  PictureFile small = picture();
   small.width = 6;
-  EXPECT_THROW(savePicture(small, scratch / "x.png"), CDMathError);
+  EXPECT_THROW(savePicture(small, scratch / "x.png"), MathError);
   EXPECT_EQ(filesBelow(scratch.path), 1u);
   try {
     savePicture(picture(), scratch / "x.nonsense");
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("x.nonsense"), std::string::npos);
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;

@@ -1,5 +1,5 @@
 // What is measured on pictures of scenes (nw/thesis/Pictures.nw).
-#include "thesis/Pictures.hpp"
+#include "malus/thesis/Pictures.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,15 +14,15 @@
 
 #include "Items.hpp"
 #include "Program.hpp"
-#include "imaging/CDImage.hpp"
-#include "program/Render.hpp"
+#include "malus/files/Cube.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 
 namespace {
 /// 6 x 5 pixels: a facet "top" of 4 x 3 in a frame of "ground", S0 = 1.
-CDStokesImage framed() {
-  CDStokesImage image{6, 5, {}, std::vector<std::uint32_t>(30, 0), {"ground", "top"}};
+StokesImage framed() {
+  StokesImage image{6, 5, {}, std::vector<std::uint32_t>(30, 0), {"ground", "top"}};
   for (auto& plane : image.stokes) plane.assign(30, 0);
   image.stokes[0].assign(30, 1);
   for (int y = 1; y < 4; ++y)
@@ -32,13 +32,13 @@ CDStokesImage framed() {
 }  // namespace
 
 TEST(PicturesIdentity, TheInsideOfAFacetHasNoRim) {
-  CDStokesImage image = framed();
-  EXPECT_EQ(insideOf(image, "top"), (CDPixels{14, 15}));  // the middle row without its ends
-  EXPECT_TRUE(insideOf(image, "ground").empty());         // nowhere two pixels thick
-  EXPECT_EQ(insideOf(image, [](const std::string&) { return true; }), (CDPixels{14, 15}));
+  StokesImage image = framed();
+  EXPECT_EQ(insideOf(image, "top"), (Pixels{14, 15}));  // the middle row without its ends
+  EXPECT_TRUE(insideOf(image, "ground").empty());       // nowhere two pixels thick
+  EXPECT_EQ(insideOf(image, [](const std::string&) { return true; }), (Pixels{14, 15}));
   image.facet[7] = 0;  // negative control: a corner of the facet is gone
-  EXPECT_EQ(insideOf(image, "top"), CDPixels{15});
-  image.facet.assign(30, CDStokesImage::nothing);
+  EXPECT_EQ(insideOf(image, "top"), Pixels{15});
+  image.facet.assign(30, StokesImage::nothing);
   EXPECT_TRUE(insideOf(image, [](const std::string&) { return true; }).empty());
 }
 
@@ -48,7 +48,7 @@ TEST(PicturesIdentity, MeansAndErrorsByHand) {
   EXPECT_EQ(rmsDifference(values, reference, {0, 1, 2}), 0);
   EXPECT_NEAR(rmsDifference(values, reference, {0, 3}), 5 / std::sqrt(2.0), 1e-15);
   EXPECT_TRUE(std::isnan(meanOver(values, {})));
-  CDStokesImage noisy = framed();
+  StokesImage noisy = framed();
   EXPECT_EQ(relativeError(noisy, framed()), 0);
   noisy.stokes[0][3] = 4;  // negative control: 3 off in one pixel of 30, mean 1
   EXPECT_NEAR(relativeError(noisy, framed()), 3 / std::sqrt(30.0), 1e-15);
@@ -56,8 +56,8 @@ TEST(PicturesIdentity, MeansAndErrorsByHand) {
 
 TEST(PicturesIdentity, SpecklesAndHotSpotsAreCounted) {
   const std::vector<double> reference(6, 1.0), values{1, 1.05, 1.5, 0.4, 1, 30};
-  const CDPixels all{0, 1, 2, 3, 4, 5}, dark{0, 1, 4};
-  const CDSpeckles speckles = specklesOf(values, reference, all, 0.1);
+  const Pixels all{0, 1, 2, 3, 4, 5}, dark{0, 1, 4};
+  const Speckles speckles = specklesOf(values, reference, all, 0.1);
   EXPECT_EQ(speckles.count, 3u);
   EXPECT_NEAR(speckles.magnitude, (0.5 + 0.6 + 29) / 3, 1e-14);
   EXPECT_EQ(hotSpots(values, reference, all, 10), 1u);
@@ -77,7 +77,7 @@ TEST(PicturesIdentity, ShadesAndStretch) {
 }
 
 TEST(PicturesIdentity, DegreeOfPolarisationOfEachPixel) {
-  CDStokesImage image = framed();
+  StokesImage image = framed();
   image.stokes[1][2] = 0.3, image.stokes[2][2] = -0.4, image.stokes[0][4] = 0;
   const std::vector<double> degree = image.dolp();
   EXPECT_NEAR(degree[2], 0.5, 1e-15);
@@ -86,8 +86,8 @@ TEST(PicturesIdentity, DegreeOfPolarisationOfEachPixel) {
 }
 
 TEST(PicturesInvariant, PanelsBecomeTwoTablesAndAPicture) {
-  CDItem item("F0", "nowhere", "validation");
-  const CDStokesImage image = framed();
+  Item item("F0", "nowhere", "validation");
+  const StokesImage image = framed();
   drawPanels(item, "images", image.width,
              {{"a", image.stokes[0], 0, 1}, {"b", image.stokes[1], -1, 1, "signed"}}, 2, "W",
              "two panels");
@@ -99,8 +99,8 @@ TEST(PicturesInvariant, PanelsBecomeTwoTablesAndAPicture) {
 
 namespace {
 /// What `malus render scenes/NAME.json` writes with the size that the figures have.
-CDCube renderedFromOutside(const Scratch& scratch, const std::string& name, int pixels,
-                           const std::string& arguments = "") {
+Cube renderedFromOutside(const Scratch& scratch, const std::string& name, int pixels,
+                         const std::string& arguments = "") {
   std::filesystem::copy(scenesDirectory(), scratch.path,
                         std::filesystem::copy_options::recursive |
                             std::filesystem::copy_options::overwrite_existing);
@@ -120,7 +120,7 @@ CDCube renderedFromOutside(const Scratch& scratch, const std::string& name, int 
 }
 
 /// Values of a cube that are not, to the bit, those of the pictures in single precision.
-std::size_t differentBits(const CDCube& cube, const std::vector<CDStokesImage>& bands) {
+std::size_t differentBits(const Cube& cube, const std::vector<StokesImage>& bands) {
   std::size_t different = 0;
   const std::size_t channels = 4 * bands.size();
   for (std::size_t pixel = 0; pixel < bands[0].size(); ++pixel)
@@ -146,14 +146,14 @@ TEST(PicturesInvariant, AnItemsPictureIsWhatMalusRenderMakes) {
                                     {"flight-staring", 1},
                                     {"rochester-day", 9}}) {
     const Scratch scratch;
-    const CDScene scene = chunkyScene(name, 48);
+    const Scene scene = chunkyScene(name, 48);
     const std::string frames =
         scene.platform.frames() > 1 ? fmt::format("--frames {0}:{0}", frame) : "";
-    const CDCube cube = renderedFromOutside(scratch, name, 48, frames);
-    const std::vector<CDStokesImage> bands = renderBands(scene, frame);
+    const Cube cube = renderedFromOutside(scratch, name, 48, frames);
+    const std::vector<StokesImage> bands = renderBands(scene, frame);
     ASSERT_EQ(cube.data.size(), 48 * 48 * 4 * bands.size()) << name;
     EXPECT_EQ(differentBits(cube, bands), 0u) << name;
-    CDScene other = scene;  // negative control
+    Scene other = scene;  // negative control
     other.radiometry.seed = 2;
     EXPECT_GT(differentBits(cube, renderBands(other, frame)), 0u) << name;
   }
@@ -165,19 +165,19 @@ TEST(PicturesInvariant, APlateIsWhatMalusRenderMakes) {
       malusIn(scratch.path,
               "render '" + (scenesDirectory() / "flat-plate.json").string() + "' --out out");
   ASSERT_EQ(run.code, 0) << run.err;
-  const CDCube cube = readCube(scratch / "out/flat-plate.img");
-  const CDScene scene = shippedScene("flat-plate");
+  const Cube cube = readCube(scratch / "out/flat-plate.img");
+  const Scene scene = shippedScene("flat-plate");
   ASSERT_EQ(cube.data.size(), 128 * 128 * 4u);
   EXPECT_EQ(differentBits(cube, renderBands(scene)), 0u);
-  const CDScene rougher =  // negative control
+  const Scene rougher =  // negative control
       shippedScene("flat-plate", R"({"materials": {"plate": {"sigma": 0.21}}})");
   EXPECT_GT(differentBits(cube, renderBands(rougher)), 0u);
 }
 
 TEST(PicturesIdentity, APatchChangesASceneAndNothingElse) {
-  const CDScene scene = chunkyScene("chunky-bar-copper", 32),
-                patched =
-                    chunkyScene("chunky-bar-copper", 32, R"({"radiometry": {"rays": [7]}})");
+  const Scene scene = chunkyScene("chunky-bar-copper", 32),
+              patched =
+                  chunkyScene("chunky-bar-copper", 32, R"({"radiometry": {"rays": [7]}})");
   EXPECT_EQ(patched.radiometry.rays, std::vector<int>{7});
   EXPECT_NE(scene.radiometry.rays, patched.radiometry.rays);
   EXPECT_EQ(patched.sensor.geometry().width, 32u);
@@ -187,13 +187,13 @@ TEST(PicturesIdentity, APatchChangesASceneAndNothingElse) {
     EXPECT_NEAR(
         pixels / chunkyScene("chunky-bar-copper", pixels).sensor.geometry().focal_length_px,
         10.0 / 15, 1e-12);
-  EXPECT_THROW(chunkyScene("chunky-bar-copper", 32, R"({"sensr": {}})"), CDInputError);
-  EXPECT_THROW(shippedScene("no-such-scene"), CDInputError);
+  EXPECT_THROW(chunkyScene("chunky-bar-copper", 32, R"({"sensr": {}})"), InputError);
+  EXPECT_THROW(shippedScene("no-such-scene"), InputError);
 }
 
 TEST(PicturesIdentity, TopsAndSidesAreToldByName) {
   std::array<int, 3> found{};
-  const CDScene scene = chunkyScene("chunky-bar-copper", 16);
+  const Scene scene = chunkyScene("chunky-bar-copper", 16);
   for (const std::string& facet : scene.world.geometry.facetNames())
     ++found[isTop(facet) ? 0 : isSide(facet) ? 1 : 2];
   EXPECT_EQ(found, (std::array{4, 16, 1}));  // four chunks of five faces, and the ground

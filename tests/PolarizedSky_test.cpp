@@ -1,4 +1,4 @@
-// The polarised sky as surfaces see it: chapter CDRayleighSky through the radiometry of CDRadiometry.
+// The polarised sky as surfaces see it: chapter RayleighSky through the radiometry of Radiometry.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -6,35 +6,35 @@
 #include <memory>
 #include <numbers>
 
-#include "imaging/CDRadiometry.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "world/CDRayleighSky.hpp"
+#include "malus/air/RayleighSky.hpp"
+#include "malus/render/Radiometry.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
 const CDVector up{0, 0, 1};
-const CDSpectralGridPtr one_band = CDSpectralGrid::make({450.0});
+const SpectralGridPtr one_band = SpectralGrid::make({450.0});
 
 std::shared_ptr<const CDBRDFModel> copper() {
   const CDSpectralVector<double> n(one_band, 1.165), k(one_band, 2.4), sigma(one_band, 0.3);
   return std::make_shared<BRDFTorranceSparrow>(n, k, sigma);
 }
 
-std::shared_ptr<const CDRayleighSky> skyWith(const CDVector& to_sun) {
-  const CDSun sun{to_sun, CDSpectralVector<CDStokesVector>(one_band, 1.0)};
-  return std::make_shared<CDRayleighSky>(sun, CDRayleighSky::clearAir(one_band, 0.2));
+std::shared_ptr<const RayleighSky> skyWith(const CDVector& to_sun) {
+  const Sun sun{to_sun, CDSpectralVector<CDStokesVector>(one_band, 1.0)};
+  return std::make_shared<RayleighSky>(sun, RayleighSky::clearAir(one_band, 0.2));
 }
 
-CDWorld worldOf(const CDTransform& place, std::shared_ptr<const CDSky> sky) {
-  CDMesh mesh;
+World worldOf(const Transform& place, std::shared_ptr<const Sky> sky) {
+  Mesh mesh;
   mesh.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   mesh.facets = {"plate"}, mesh.materials = {"copper"};
   mesh.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
-  CDWorld world;
+  World world;
   world.grid = one_band;
-  CDGeometryBuilder builder;
+  GeometryBuilder builder;
   builder.addMesh(mesh, place);
   world.geometry = std::move(builder).build();
   world.materials.push_back({"copper", copper()});
@@ -42,21 +42,20 @@ CDWorld worldOf(const CDTransform& place, std::shared_ptr<const CDSky> sky) {
   return world;
 }
 
-CDStokesVector seen(const CDWorld& world, const CDVector& to_viewer,
-                    const CDVector& horizontal) {
-  const CDRadiometryOptions options{.sampling = CDSampling::grid, .rays = {20001}};
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), options);
-  const CDRadiometry::Ray ray{to_viewer * 5, -to_viewer, horizontal};
+CDStokesVector seen(const World& world, const CDVector& to_viewer, const CDVector& horizontal) {
+  const RadiometryOptions options{.sampling = Sampling::grid, .rays = {20001}};
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
+  const Radiometry::Ray ray{to_viewer * 5, -to_viewer, horizontal};
   std::array<double, 4> out{};
   radiometry.radiance({&ray, 1}, out, {});
   return {out[0], out[1], out[2], out[3]};
 }
 
 // The same by a midpoint rule of our own and frames built from their definitions.
-CDStokesVector integrated(const CDSky& sky, const CDVector& normal, const CDVector& to_viewer,
+CDStokesVector integrated(const Sky& sky, const CDVector& normal, const CDVector& to_viewer,
                           const CDVector& horizontal) {
   const auto brdf = copper();
-  const CDRayFrame local =
+  const RayFrame local =
       rayFrame(-normal, {1, 2, 3});  // s, p across the normal, in some azimuth
   const int zones = 250, sectors = 300;
   CDStokesVector sum(0, 0, 0, 0);
@@ -74,10 +73,10 @@ CDStokesVector integrated(const CDSky& sky, const CDVector& normal, const CDVect
       const CDVector flat = d - z * normal;
       const double phi = std::atan2(dot(cross(flat, across), normal), dot(flat, across));
       const auto f =
-          brdf->getBRDF(CDBRDFGeometry::fromAngles(std::acos(z), std::acos(cos_r), phi)).at(0);
+          brdf->getBRDF(BRDFGeometry::fromAngles(std::acos(z), std::acos(cos_r), phi)).at(0);
       sum += f * in * (z * 2 * pi / (zones * sectors));
     }
-  CDRayFrame camera = rayFrame(to_viewer, normal);
+  RayFrame camera = rayFrame(to_viewer, normal);
   camera.s = normalized(horizontal - dot(horizontal, to_viewer) * to_viewer);
   camera.p = cross(to_viewer, camera.s);
   return sum.rotate(frameRotation(rayFrame(to_viewer, normal), camera));
@@ -95,9 +94,9 @@ double apart(const CDStokesVector& a, const CDStokesVector& b) {
 TEST(PolarizedSkyInvariant, ARoughPlateReadsTheSky) {
   const auto sky = skyWith(compassDirection(60 * degree, 200 * degree));
   for (const bool tilted : {false, true}) {
-    const CDTransform place = tilted ? CDTransform::rotate({0.6, 0.8, 0}, 0.7) : CDTransform{};
+    const Transform place = tilted ? Transform::rotate({0.6, 0.8, 0}, 0.7) : Transform{};
     const CDVector normal = place.apply(up);
-    const CDWorld world = worldOf(place, sky);
+    const World world = worldOf(place, sky);
     for (int azimuth = 0; azimuth < 360; azimuth += 120) {
       const CDVector viewer = place.apply(CDVector::fromAngles(50 * degree, azimuth * degree));
       const CDVector level = normalized(cross(up, viewer));
@@ -121,9 +120,9 @@ TEST(PolarizedSkyInvariant, ARoughPlateReadsTheSky) {
 TEST(PolarizedSkyInvariant, ATurnedWorldLooksTheSame) {
   CDStokesVector first;
   for (const double turn_deg : {0.0, 33.0, 145.0, 290.0}) {
-    const CDTransform turn = CDTransform::rotate(up, turn_deg * degree);
+    const Transform turn = Transform::rotate(up, turn_deg * degree);
     const auto sky = skyWith(turn.apply(compassDirection(60 * degree, 200 * degree)));
-    const CDTransform place = turn.after(CDTransform::rotate({0.6, 0.8, 0}, 0.7));
+    const Transform place = turn.after(Transform::rotate({0.6, 0.8, 0}, 0.7));
     const CDVector viewer = turn.apply(normalized(CDVector{0.5, -0.3, 0.7}));
     const CDStokesVector got = seen(worldOf(place, sky), viewer, turn.apply({1, 0, 0}));
     if (turn_deg == 0)

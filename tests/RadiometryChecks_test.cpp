@@ -10,10 +10,10 @@
 
 #include "Program.hpp"
 #include "Worlds.hpp"
-#include "imaging/CDSensor.hpp"
-#include "light/CDTable.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/render/Sensor.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -25,23 +25,23 @@ using Model = std::shared_ptr<const CDBRDFModel>;
 Model matt(double reflectance) {
   return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
 }
-Model metal(double n, double sigma, CDDiffuseTerm diffuse) {
+Model metal(double n, double sigma, DiffuseTerm diffuse) {
   const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
   return std::make_shared<BRDFTorranceSparrow>(all(n), all(2.95), all(sigma),
-                                               CDTorranceSparrowOptions{.diffuse = diffuse});
+                                               TorranceSparrowOptions{.diffuse = diffuse});
 }
-Model copper(double sigma, CDDiffuseTerm diffuse) { return metal(0.405, sigma, diffuse); }
+Model copper(double sigma, DiffuseTerm diffuse) { return metal(0.405, sigma, diffuse); }
 // A metal whose index is purely imaginary reflects everything at any angle.
-Model lossless(double sigma) { return metal(0, sigma, CDDiffuseTerm::thesis); }
+Model lossless(double sigma) { return metal(0, sigma, DiffuseTerm::thesis); }
 
-CDRadiometryOptions importance(std::vector<int> rays) {
-  CDRadiometryOptions options;
-  options.sampling = CDSampling::importance, options.rays = std::move(rays);
+RadiometryOptions importance(std::vector<int> rays) {
+  RadiometryOptions options;
+  options.sampling = Sampling::importance, options.rays = std::move(rays);
   return options;
 }
-CDRadiometryOptions gridOf(int rays) {
-  CDRadiometryOptions options;
-  options.sampling = CDSampling::grid, options.rays = {rays};
+RadiometryOptions gridOf(int rays) {
+  RadiometryOptions options;
+  options.sampling = Sampling::grid, options.rays = {rays};
   return options;
 }
 
@@ -50,7 +50,7 @@ std::vector<Quad> plate(const Model& model) {
 }
 
 // A globe of radius 1 whose cap above z = cos(opening) is missing, made of quadrilaterals seen from inside.
-CDWorld globe(double opening_rad, const Model& model) {
+World globe(double opening_rad, const Model& model) {
   std::vector<Quad> quads;
   constexpr int rows = 60, columns = 120;
   for (int i = 0; i < rows; ++i)
@@ -62,10 +62,10 @@ CDWorld globe(double opening_rad, const Model& model) {
       quads.push_back(
           {corner(i + 1, j), corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), model});
     }
-  CDWorld world;
+  World world;
   world.grid = oneBand();
-  CDGeometryBuilder builder;
-  CDMesh mesh;
+  GeometryBuilder builder;
+  Mesh mesh;
   mesh.facets = mesh.materials = {"globe"};
   for (const Quad& q : quads) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -81,7 +81,7 @@ CDWorld globe(double opening_rad, const Model& model) {
 }
 
 // Seen through the opening: a point of the bottom.
-CDRadiometry::Ray intoGlobe() { return looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0}); }
+Radiometry::Ray intoGlobe() { return looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0}); }
 
 // Form factor from a surface element to a parallel rectangle a by b at the height h whose corner stands above
 // it (Siegel and Howell, Thermal Radiation Heat Transfer, configuration factors of elements to rectangles).
@@ -90,8 +90,8 @@ double cornerFactor(double a, double b, double h) {
   return (A / p * std::atan(B / p) + B / q * std::atan(A / q)) / (2 * pi);
 }
 
-double s0(const CDWorld& world, const CDRadiometryOptions& options,
-          const CDRadiometry::Ray& ray, std::uint64_t pixels = 1) {
+double s0(const World& world, const RadiometryOptions& options, const Radiometry::Ray& ray,
+          std::uint64_t pixels = 1) {
   return estimate(world, options, ray, pixels).mean[0];
 }
 }  // namespace
@@ -126,7 +126,7 @@ TEST(RadiometryChecksInvariant, LosslessMetalIsWhite) {
         estimate(worldOf(plate(lossless(0.2)), uniformSky(1)), importance({257}), ray, 200);
     // 5 standard errors, and the tabulated remainder's interpolation
     EXPECT_NEAR(measured.mean[0], 1, 5 * measured.error[0] + 1e-4) << zenith;
-    const double absorbing = s0(worldOf(plate(copper(0.2, CDDiffuseTerm::none)), uniformSky(1)),
+    const double absorbing = s0(worldOf(plate(copper(0.2, DiffuseTerm::none)), uniformSky(1)),
                                 importance({257}), ray, 200);
     EXPECT_LT(absorbing, 0.95) << "negative control";
   }
@@ -135,7 +135,7 @@ TEST(RadiometryChecksInvariant, LosslessMetalIsWhite) {
 // Helmholtz: what a viewer sees of a plate under a sky of radiance one is the fraction of the light that the plate
 // would reflect if it came from there. getDHR is a quadrature of its own.
 TEST(RadiometryChecksIdentity, PlateUnderAUniformSkyShowsItsReflectance) {
-  const Model model = copper(0.2, CDDiffuseTerm::reciprocal);
+  const Model model = copper(0.2, DiffuseTerm::reciprocal);
   for (const double zenith : {0.2, 0.8, 1.2}) {
     const auto measured =
         estimate(worldOf(plate(model), uniformSky(1)), importance({257}),
@@ -152,22 +152,22 @@ TEST(RadiometryChecksIdentity, PlateUnderAUniformSkyShowsItsReflectance) {
 TEST(RadiometryChecksInvariant, NothingLeaksIntoAClosedBox) {
   std::array<Model, 6> walls;
   walls.fill(matt(1));
-  CDWorld world = worldOf(boxOf(walls), uniformSky(1e9));
-  world.sun.emplace(CDSun{normalized(CDVector{0.3, 0.2, 0.8}), spectrumOf(1e9)});
-  CDRandom random(4);
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                importance({40, 3, 2}));
+  World world = worldOf(boxOf(walls), uniformSky(1e9));
+  world.sun.emplace(Sun{normalized(CDVector{0.3, 0.2, 0.8}), spectrumOf(1e9)});
+  Random random(4);
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                              importance({40, 3, 2}));
   std::array<double, 4> out{};
   for (std::uint64_t i = 0; i < 300; ++i) {
     const auto u = [&] { return 2 * random.uniform() - 1; };
     const CDVector towards =
         i % 3 ? CDVector{u(), u(), u()} : CDVector{1, u(), 0.999};  // every third near an edge
-    const CDRadiometry::Ray ray{{0.1, 0.2, 0.3},
-                                normalized(towards - CDVector{0.1, 0.2, 0.3}),
-                                {0.1, 0.7, 0.2},
-                                i,
-                                0,
-                                0};
+    const Radiometry::Ray ray{{0.1, 0.2, 0.3},
+                              normalized(towards - CDVector{0.1, 0.2, 0.3}),
+                              {0.1, 0.7, 0.2},
+                              i,
+                              0,
+                              0};
     radiometry.radiance({&ray, 1}, out);
     ASSERT_EQ(out[0], 0) << i;
   }
@@ -205,7 +205,7 @@ TEST(RadiometryChecksPublished, CeilingHidesItsFormFactor) {
 // their normals are off by up to 1/40, the albedo seen by 3e-4 of itself; tolerance 2e-3 with 5 standard errors.
 TEST(RadiometryChecksPublished, GlobeWithAnOpeningReflectionByReflection) {
   const double opening = 70 * degree, open_share = (1 - std::cos(opening)) / 2, rho = 0.8;
-  const CDWorld world = globe(opening, matt(rho));
+  const World world = globe(opening, matt(rho));
   const std::vector<std::vector<int>> depths{{65}, {65, 3}, {65, 3, 3}, {65, 3, 3, 3}};
   double expected = 0, term = rho * open_share;
   for (const auto& rays : depths) {
@@ -223,7 +223,7 @@ TEST(RadiometryChecksPublished, GlobeWithAnOpeningReflectionByReflection) {
 // sky's radiance as more reflections are followed, and never above. Copper keeps some: each reflection returns between
 // the least and the largest of its reflectances, R = 0.84 (near 75 degrees) and 1, so not less than 0.84 / (n + 1)...
 TEST(RadiometryChecksInvariant, MetalCavityGivesBackAllEnergy) {
-  const CDWorld world = globe(80 * degree, lossless(0.3));
+  const World world = globe(80 * degree, lossless(0.3));
   double before = 0;
   for (const std::size_t depth : {1u, 2u, 4u, 8u, 16u}) {
     std::vector<int> rays(depth, 2);
@@ -234,7 +234,7 @@ TEST(RadiometryChecksInvariant, MetalCavityGivesBackAllEnergy) {
     before = measured.mean[0];
   }
   EXPECT_NEAR(before, 1, 0.01) << "after sixteen reflections";
-  const CDWorld lossy = globe(80 * degree, copper(0.3, CDDiffuseTerm::thesis));
+  const World lossy = globe(80 * degree, copper(0.3, DiffuseTerm::thesis));
   EXPECT_LT(s0(lossy, importance(std::vector<int>(16, 2)), intoGlobe(), 400), 0.95)
       << "negative control";
 }
@@ -242,20 +242,19 @@ TEST(RadiometryChecksInvariant, MetalCavityGivesBackAllEnergy) {
 // The irradiance on an image plane behind a pinhole is the sum over the pixels of radiance times cos^4/f^2, and under
 // a uniform sky it is pi times the form factor of the plane's window. Midpoints: relative error of 1/N^2.
 TEST(RadiometryChecksPublished, ImagePlaneUnderAUniformSky) {
-  const CDWorld world = worldOf(plate(matt(0)), uniformSky(1));
-  CDSensorGeometry geometry;
+  const World world = worldOf(plate(matt(0)), uniformSky(1));
+  SensorGeometry geometry;
   geometry.width = geometry.height = 100;
   geometry.focal_length_px = 40, geometry.principal_x = 50, geometry.principal_y = 50;
-  const CDSensor sensor(geometry, oneBand(), oneBand());
-  const CDPlatform platform =
-      CDPlatform::fixed(CDPose::looking({0, 0, 1}, {0, 0, 9}, {0, 1, 0}));
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                importance({2}));
+  const Sensor sensor(geometry, oneBand(), oneBand());
+  const Platform platform = Platform::fixed(Pose::looking({0, 0, 1}, {0, 0, 9}, {0, 1, 0}));
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                              importance({2}));
   double sum = 0;
   std::array<double, 4> out{};
   for (std::size_t y = 0; y < 100; ++y)
     for (std::size_t x = 0; x < 100; ++x) {
-      const CDRadiometry::Ray ray = sensor.ray(x, y, 0, platform, 0, 1);
+      const Radiometry::Ray ray = sensor.ray(x, y, 0, platform, 0, 1);
       radiometry.radiance({&ray, 1}, out);
       sum += out[0] * std::pow(ray.direction.z, 4) / (40.0 * 40.0);
     }
@@ -269,7 +268,7 @@ TEST(RadiometryChecksPublished, ImagePlaneUnderAUniformSky) {
 // program prints. The sun's ray is followed in double precision.
 TEST(RadiometryChecksIdentity, PlateIsWhatTheProgramPrints) {
   std::string text = "theta_i_deg,theta_r_deg,phi_deg\n";
-  CDRandom random(11);
+  Random random(11);
   std::vector<std::array<double, 3>> angles;
   for (int i = 0; i < 100; ++i) {
     angles.push_back({80 * random.uniform(), 80 * random.uniform(), 360 * random.uniform()});
@@ -283,16 +282,16 @@ TEST(RadiometryChecksIdentity, PlateIsWhatTheProgramPrints) {
               "--geometries angles.csv --format csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   std::istringstream stream(outcome.out);
-  const CDTable printed = CDTable::parse(stream, "answer");
+  const Table printed = Table::parse(stream, "answer");
   ASSERT_EQ(printed.rows(), 100u);
   for (std::size_t i = 0; i < 100; ++i) {
-    CDWorld world = worldOf(plate(copper(0.2, CDDiffuseTerm::thesis)));
+    World world = worldOf(plate(copper(0.2, DiffuseTerm::thesis)));
     const double azimuth = 1, cos_i = std::cos(angles[i][0] * degree);
     world.sun.emplace(
-        CDSun{CDVector::fromAngles(angles[i][0] * degree, azimuth), spectrumOf(1), 0});
+        Sun{CDVector::fromAngles(angles[i][0] * degree, azimuth), spectrumOf(1), 0});
     const CDVector viewer =
         CDVector::fromAngles(angles[i][1] * degree, azimuth + angles[i][2] * degree);
-    const auto seen = estimate(world, CDRadiometryOptions{.rays = {1}},
+    const auto seen = estimate(world, RadiometryOptions{.rays = {1}},
                                looking({0, 0, 0}, viewer, rayFrame(viewer, {0, 0, 1}).s), 1);
     const double size = printed.number(i, "f00") * cos_i;
     for (std::size_t c = 0; c < 4; ++c)

@@ -1,11 +1,11 @@
 // Optical depth and depolarisation of air (nw/world/RayleighAir.nw).
-#include "world/RayleighAir.hpp"
+#include "malus/air/RayleighAir.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
@@ -56,9 +56,9 @@ TEST(RayleighAirPublished, Depolarisation) {
 TEST(RayleighAirInvariant, PressureEntersLinearlyAndNonsenseIsRefused) {
   EXPECT_NEAR(rayleighOpticalDepth(500, {506.625}) * 2, rayleighOpticalDepth(500), 1e-15);
   EXPECT_EQ(rayleighOpticalDepth(500, {0}), 0);
-  EXPECT_THROW(rayleighOpticalDepth(199), CDMathError);
-  EXPECT_THROW(rayleighOpticalDepth(2001), CDMathError);
-  EXPECT_THROW(rayleighOpticalDepth(std::nan("")), CDMathError);
-  EXPECT_THROW(rayleighOpticalDepth(500, {-1}), CDMathError);
-  EXPECT_THROW(rayleighOpticalDepth(500, {2000}), CDMathError);
+  EXPECT_THROW(rayleighOpticalDepth(199), MathError);
+  EXPECT_THROW(rayleighOpticalDepth(2001), MathError);
+  EXPECT_THROW(rayleighOpticalDepth(std::nan("")), MathError);
+  EXPECT_THROW(rayleighOpticalDepth(500, {-1}), MathError);
+  EXPECT_THROW(rayleighOpticalDepth(500, {2000}), MathError);
 }

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "Program.hpp"
-#include "light/CDError.hpp"
-#include "light/InputFiles.hpp"
-#include "program/Render.hpp"
-#include "program/Scene.hpp"
-#include "program/SceneSchema.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/base/InputFiles.hpp"
+#include "malus/files/SceneReader.hpp"
+#include "malus/files/SceneSchema.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -302,15 +302,15 @@ void numbersOf(const json& value, const std::string& at, std::vector<std::string
 /// "refused", with the number's own path in the message; "rendered" to a pixel of numbers; anything else is wrong.
 std::string fateOf(const json& scene, const std::filesystem::path& directory) {
   try {
-    const CDScene read = readSceneText(scene.dump(), "s.json", directory);
+    const Scene read = readSceneText(scene.dump(), "s.json", directory);
     if (read.platform.frames() > 1000 || read.sensor.geometry().samples > 100)
       return "rendered";
-    const CDFrame picture =
-        renderScene(read, read.platform.frames() - 1, {1, CDTile{1, 1, 2, 2}, nullptr});
+    const RenderedImage picture =
+        renderScene(read, read.platform.frames() - 1, {1, Tile{1, 1, 2, 2}, nullptr});
     for (const double number : picture.stokes)
       if (!std::isfinite(number)) return "a pixel that is no number";
     return "rendered";
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     const std::string what = error.what();
     return what.starts_with("s.json:") || what.find("named at s.json:") != what.npos
                ? "refused"

@@ -1,5 +1,5 @@
 // One run, reported in three ways (nw/program/Report.nw).
-#include "program/Report.hpp"
+#include "malus/thesis/Report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,21 +10,21 @@
 using namespace malus;
 
 namespace {
-CDRun sampleRun() {
-  CDItemResult one{{"T1", "table", "One & only", "page 1"},
-                   {},
-                   {{"curve", "A <curve>", true}},
-                   {"curve"},
-                   {{"a", "1.5"}},
-                   ""};
-  one.claims = {{"r", "1.25", "1.2512", "half a unit", CDVerdict::reproduced, 0.0012},
-                {"e", "104.07", "102.07", "digits", CDVerdict::erratum, -2.0},
-                {"d", "", "seen \"so\"", "", CDVerdict::differs},
-                {"n", "", "", "the scan", CDVerdict::notTestable}};
+Run sampleRun() {
+  ItemResult one{{"T1", "table", "One & only", "page 1"},
+                 {},
+                 {{"curve", "A <curve>", true}},
+                 {"curve"},
+                 {{"a", "1.5"}},
+                 ""};
+  one.claims = {{"r", "1.25", "1.2512", "half a unit", Verdict::reproduced, 0.0012},
+                {"e", "104.07", "102.07", "digits", Verdict::erratum, -2.0},
+                {"d", "", "seen \"so\"", "", Verdict::differs},
+                {"n", "", "", "the scan", Verdict::notTestable}};
   one.claims[0].row.sentence = "a < b";
   one.claims[2].row.sentence = "sentence";
-  CDItemResult two{{"T2", "table", "Two", ""}, {}, {}, {}, {}, "it broke"};
-  CDRun run;
+  ItemResult two{{"T2", "table", "Two", ""}, {}, {}, {}, {}, "it broke"};
+  Run run;
   run.items = {one, two};
   run.changes = {{"T1", "r", "differs", "reproduced"}, {"T1", "x", "erratum", ""}};
   return run;
@@ -57,18 +57,17 @@ TEST(ReportIdentity, TheSummaryTellsCountsFailuresAndChanges) {
 
 // Of eleven claims that are reproduced, one repeats, three are fitted with two unknowns, two are ours, and two have labels.
 TEST(ReportIdentity, RepeatsLabelsAndUnknownsAreNotCounted) {
-  CDRun run = sampleRun();
+  Run run = sampleRun();
   auto& claims = run.items[0].claims;
-  const CDClaim holds = claims[0];
+  const Claim holds = claims[0];
   claims.assign(11, holds);
   claims[1].row.repeats = "T1/r";
   for (const int i : {2, 3, 4})
-    claims[i].row.kind = CDClaimKind::fitted, claims[i].row.fit = "sun",
+    claims[i].row.kind = ClaimKind::fitted, claims[i].row.fit = "sun",
     claims[i].row.unknowns = 2;
-  for (const int i : {5, 6}) claims[i].row.kind = CDClaimKind::own;
-  claims[7].row.kind = CDClaimKind::input, claims[7].verdict = CDVerdict::input;
-  claims[8].row.kind = CDClaimKind::implementation,
-  claims[8].verdict = CDVerdict::implementation;
+  for (const int i : {5, 6}) claims[i].row.kind = ClaimKind::own;
+  claims[7].row.kind = ClaimKind::input, claims[7].verdict = Verdict::input;
+  claims[8].row.kind = ClaimKind::implementation, claims[8].verdict = Verdict::implementation;
   const std::string text = summaryText(run, "out");
   EXPECT_NE(text.find("the thesis: 4 sentences and printed numbers: 4 reproduced, 0 erratum"),
             std::string::npos)
@@ -81,7 +80,7 @@ TEST(ReportIdentity, RepeatsLabelsAndUnknownsAreNotCounted) {
 }
 
 TEST(ReportIdentity, OneScreenHoldsManyItemsAndManyChanges) {
-  CDRun run = sampleRun();
+  Run run = sampleRun();
   run.items.resize(60, run.items[0]);
   run.changes.resize(100, run.changes[0]);
   EXPECT_LE(occurrences(summaryText(run, "out"), "\n"), 50u);
@@ -109,7 +108,7 @@ TEST(ReportIdentity, ValuesBecomeCommands) {
 
 TEST(ReportInvariant, APartialRunLeavesTheWholeReportAlone) {
   const Scratch scratch;
-  CDRun run = sampleRun();
+  Run run = sampleRun();
   writeReport(run, scratch / "out");
   const std::string whole = contents(scratch / "out/report.json"),
                     values = contents(scratch / "out/values.tex");

@@ -1,5 +1,5 @@
 // Where the values of a scene file stand, and what is said of a broken one (nw/program/SceneText.nw).
-#include "program/SceneText.hpp"
+#include "malus/files/SceneText.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -97,8 +97,8 @@ struct Writer {
 
 std::string complaint(const std::string& text) {
   try {
-    const CDSceneText read(text, "s.json", ".");
-  } catch (const CDInputError& error) {
+    const SceneText read(text, "s.json", ".");
+  } catch (const InputError& error) {
     return error.what();
   }
   return "accepted";
@@ -111,9 +111,9 @@ bool begins(const std::string& text, const std::string& beginning) {
 RC_GTEST_PROP(SceneTextIdentity, EveryValueStandsWhereItsWriterPutIt, ()) {
   Writer writer(*rc::gen::arbitrary<std::uint32_t>());
   writer.value("", 0);
-  const CDSceneText text(writer.text, "s.json", ".");
+  const SceneText text(writer.text, "s.json", ".");
   for (const auto& [path, place] : writer.places) {
-    const CDInputPlace found = text.place(path);
+    const InputPlace found = text.place(path);
     RC_ASSERT(std::pair(found.line, found.column) == place);
   }
 }
@@ -129,14 +129,14 @@ TEST(SceneTextIdentity, TheRandomTreesHaveBranches) {
 }
 
 TEST(SceneTextIdentity, NegativeControlAShiftedTextHasOtherPlaces) {
-  const CDSceneText text("{\"a\": 1}", "s.json", "."), shifted(" {\"a\": 1}", "s.json", ".");
+  const SceneText text("{\"a\": 1}", "s.json", "."), shifted(" {\"a\": 1}", "s.json", ".");
   EXPECT_EQ(text.place("a").column, 7);
   EXPECT_NE(shifted.place("a").column, text.place("a").column);
 }
 
 TEST(SceneTextIdentity, ANodeComplainsWithItsPlacePathAndValue) {
-  const CDSceneText text("{\n  \"sun\": {\"zenith deg\": [1, -2]}\n}", "s.json", ".");
-  const CDSceneNode node = text.root()["sun"]["zenith deg"][1];
+  const SceneText text("{\n  \"sun\": {\"zenith deg\": [1, -2]}\n}", "s.json", ".");
+  const SceneNode node = text.root()["sun"]["zenith deg"][1];
   EXPECT_EQ(std::string(node.error("is negative", "give another").what()),
             "s.json:2:29: sun[\"zenith deg\"][1] = -2: is negative; give another");
 }
@@ -181,12 +181,12 @@ TEST(SceneTextIdentity, TextsAreLinesAndNotBooks) {
 }
 
 TEST(SceneTextIdentity, AMistakeInAFileSaysWhoNamedTheFile) {
-  const CDSceneText text("{\n  \"file\": \"x.csv\"}", "s.json", ".");
-  const CDSceneNode node = text.root()["file"];
-  const auto said = [&](const CDInputPlace& place) {
+  const SceneText text("{\n  \"file\": \"x.csv\"}", "s.json", ".");
+  const SceneNode node = text.root()["file"];
+  const auto said = [&](const InputPlace& place) {
     try {
-      inFileOf(node, [&] { throw CDInputError(place, "7", "is bad", "mend it"); });
-    } catch (const CDInputError& error) {
+      inFileOf(node, [&] { throw InputError(place, "7", "is bad", "mend it"); });
+    } catch (const InputError& error) {
       return std::string(error.what());
     }
     return std::string("nothing");
@@ -202,9 +202,9 @@ TEST(SceneTextIdentity, NestingBeyondUseIsRefused) {
 }
 
 TEST(SceneTextIdentity, APatchChangesValuesAndKeepsPlaces) {
-  CDSceneText text("{\"radiometry\": {\"rays\": [91, 1], \"seed\": 3}}", "s.json", ".");
+  SceneText text("{\"radiometry\": {\"rays\": [91, 1], \"seed\": 3}}", "s.json", ".");
   text.patch("{\"radiometry\": {\"rays\": [46], \"seed\": null, \"sampling\": \"grid\"}}");
-  const CDSceneNode node = text.root()["radiometry"];
+  const SceneNode node = text.root()["radiometry"];
   EXPECT_EQ(node["rays"].numbers(), std::vector<double>{46});
   EXPECT_FALSE(node.has("seed"));
   EXPECT_EQ(node["rays"].place().column, 25);
@@ -212,7 +212,7 @@ TEST(SceneTextIdentity, APatchChangesValuesAndKeepsPlaces) {
 }
 
 TEST(SceneTextIdentity, AKeyThatOnlyAPatchHasStandsWhereTheSceneBegins) {
-  CDSceneText text("{\"radiometry\": {}}", "s.json", ".");
+  SceneText text("{\"radiometry\": {}}", "s.json", ".");
   text.patch("{\"sensr\": {\"width\": 3}, \"radiometry\": {\"seed\": 1}}");
   EXPECT_EQ(text.root()["sensr"].place().column,
             1);  // a name without a dot has no parent but the root

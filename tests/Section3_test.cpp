@@ -1,5 +1,5 @@
 // The bench of thesis chapter 3 and the verdicts of its items (nw/thesis/Section3.nw).
-#include "thesis/Section3.hpp"
+#include "malus/thesis/Section3.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -59,12 +59,12 @@ Jones polarizerJones(double angle) {
 TEST(Section3Identity, FollowsAnEllipseThatIsKnown) {
   // E = (2 cos tau, sin tau): from x towards y, so counterclockwise, right-handed in the
   // thesis's words
-  const CDTracedEllipse right = traceEllipse(CDPlaneWave::of(2, 1, pi / 2));
+  const TracedEllipse right = traceEllipse(PlaneWave::of(2, 1, pi / 2));
   EXPECT_NEAR(right.a, 2, rounding);
   EXPECT_NEAR(right.b, 1, rounding);
   EXPECT_NEAR(std::sin(right.psi_rad), 0, rounding);  // 0 and pi are the same direction
   EXPECT_NEAR(right.chi_rad, std::atan(0.5), rounding);
-  const CDTracedEllipse left = traceEllipse(CDPlaneWave::of(1, 2, -pi / 2));
+  const TracedEllipse left = traceEllipse(PlaneWave::of(1, 2, -pi / 2));
   EXPECT_NEAR(left.psi_rad, pi / 2, rounding);
   EXPECT_NEAR(left.chi_rad, -std::atan(0.5), rounding);
 }
@@ -75,9 +75,9 @@ RC_GTEST_PROP(Section3Identity, AnEllipseTurnedByAnAngleHasThatPsi, ()) {
   // the ellipse in its own axes, a = cos chi along x', then turned: no formula of
   // section 3.1.2.4 is used
   const Complex along = std::cos(chi), across = Complex(0, -std::sin(chi));
-  const CDPlaneWave wave{std::cos(psi) * along - std::sin(psi) * across,
-                         std::sin(psi) * along + std::cos(psi) * across};
-  const CDTracedEllipse traced = traceEllipse(wave);
+  const PlaneWave wave{std::cos(psi) * along - std::sin(psi) * across,
+                       std::sin(psi) * along + std::cos(psi) * across};
+  const TracedEllipse traced = traceEllipse(wave);
   RC_ASSERT(std::abs(std::sin(traced.psi_rad - psi)) <
             1e-11);  // rounding over cos 2 chi >= 0.017
   RC_ASSERT(std::abs(traced.chi_rad - chi) < rounding);
@@ -105,65 +105,64 @@ TEST(Section3Identity, NegativeControlAFilterTurnedByHalfADegreeIsSeen) {
 }
 
 TEST(Section3Identity, AGreyFilterKeepsTheStateAndHalvesTheLight) {
-  const CDPlaneWave in = CDPlaneWave::of(1, 0.6, 1), out = greyFilter(0.5)(in);
+  const PlaneWave in = PlaneWave::of(1, 0.6, 1), out = greyFilter(0.5)(in);
   EXPECT_NEAR(out.irradiance(), in.irradiance() / 2, rounding);
   EXPECT_NEAR(traceEllipse(out).chi_rad, traceEllipse(in).chi_rad, rounding);
 }
 
 TEST(Section3Published, TablesAndFiguresAreReproduced) {
-  const std::pair<const char*, CDItemFunction> items[] = {
+  const std::pair<const char*, ItemFunction> items[] = {
       {"T3.1", reproduceT31}, {"T3.2", reproduceT32}, {"F3.1", reproduceF31},
       {"F3.2", reproduceF32}, {"F3.3", reproduceF33}, {"F3.4", reproduceF34},
       {"F3.9", reproduceF39}};
   for (const auto& [id, function] : items) {
-    const CDItem item = ran(id, function);
+    const Item item = ran(id, function);
     EXPECT_GE(item.claims().size(), 3u) << id;
-    EXPECT_EQ(named(item, CDVerdict::reproduced).size(), item.claims().size()) << id;
+    EXPECT_EQ(named(item, Verdict::reproduced).size(), item.claims().size()) << id;
   }
 }
 
 TEST(Section3Published, OnlyTheQuarterWavePlatesOfTable33AreMisnamed) {
-  const CDItem item = ran("T3.3", reproduceT33);
-  EXPECT_EQ(named(item, CDVerdict::erratum),
+  const Item item = ran("T3.3", reproduceT33);
+  EXPECT_EQ(named(item, Verdict::erratum),
             (std::set<std::string>{"quarter-wave-plate-fast-axis-horizontal",
                                    "quarter-wave-plate-fast-axis-vertical"}));
-  EXPECT_TRUE(named(item, CDVerdict::differs).empty());
+  EXPECT_TRUE(named(item, Verdict::differs).empty());
 }
 
 TEST(Section3Published, Figure37IsReproducedExceptTheOrderInItsProse) {
-  const CDItem item = ran("F3.7", reproduceF37);
-  EXPECT_EQ(named(item, CDVerdict::erratum), (std::set<std::string>{"order"}));
-  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"chi", "psi"}));
+  const Item item = ran("F3.7", reproduceF37);
+  EXPECT_EQ(named(item, Verdict::erratum), (std::set<std::string>{"order"}));
+  EXPECT_EQ(named(item, Verdict::reproduced), (std::set<std::string>{"chi", "psi"}));
 }
 
 TEST(Section3Published, EverySlipIsProvedAndEq378StandsAsPrinted) {
-  const CDItem item = ran("N8", reproduceN8);
-  EXPECT_EQ(named(item, CDVerdict::reproduced),
+  const Item item = ran("N8", reproduceN8);
+  EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"eq3.45", "eq3.77", "eq3.78", "sec3.1.2.4.circle"}));
-  EXPECT_EQ(named(item, CDVerdict::notTestable), (std::set<std::string>{"eq5.10"}));
-  EXPECT_TRUE(named(item, CDVerdict::differs).empty());
+  EXPECT_EQ(named(item, Verdict::notTestable), (std::set<std::string>{"eq5.10"}));
+  EXPECT_TRUE(named(item, Verdict::differs).empty());
   for (const std::string slip :
        {"eq3.22", "eq3.29", "eq3.30", "eq3.41", "eq3.42", "eq3.43", "eq3.44", "eq3.49",
         "eq3.76", "eq5.8", "eq5.13", "table7.5", "eq5.6.range", "figure7.34", "figure7.35"})
-    EXPECT_TRUE(named(item, CDVerdict::erratum).contains(slip)) << slip;
+    EXPECT_TRUE(named(item, Verdict::erratum).contains(slip)) << slip;
 }
 
 TEST(Section3Published, NegativeControlACorruptedPrintIsSeen) {
   const Corrupted table("T3.2.csv", "vertical,1,-1,0,0", "vertical,1,-1,0,0.001");
-  EXPECT_EQ(named(ran("T3.2", reproduceT32, table.data), CDVerdict::differs),
+  EXPECT_EQ(named(ran("T3.2", reproduceT32, table.data), Verdict::differs),
             (std::set<std::string>{"vertical"}));
   const Corrupted copper("N8-copper.csv", "0.3026,", "0.3036,");
-  EXPECT_TRUE(
-      named(ran("N8", reproduceN8, copper.data), CDVerdict::differs).contains("eq3.77"));
+  EXPECT_TRUE(named(ran("N8", reproduceN8, copper.data), Verdict::differs).contains("eq3.77"));
 }
 
 TEST(Section3Published, NegativeControlAReferenceThatNamesWhatItMeansIsNoErratum) {
   const Corrupted references("references.csv", "figure 7.32,S1,figure 7.34",
                              "figure 7.34,S3,figure 7.34");
-  EXPECT_FALSE(named(ran("N8", reproduceN8, references.data), CDVerdict::erratum)
-                   .contains("figure7.34"));
+  EXPECT_FALSE(
+      named(ran("N8", reproduceN8, references.data), Verdict::erratum).contains("figure7.34"));
 }
 
 TEST(Section3Published, NegativeControlAMissingPrintStopsTheItem) {
-  EXPECT_THROW(ran("T3.1", reproduceT31, "nowhere"), CDInputError);
+  EXPECT_THROW(ran("T3.1", reproduceT31, "nowhere"), InputError);
 }

@@ -1,5 +1,5 @@
 // The NEF's scan and grid (nw/thesis/Section54.nw): the two items, and a fit to another scan.
-#include "thesis/Section54.hpp"
+#include "malus/thesis/Section54.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 using namespace malus;
 
 TEST(Section54Published, Figure55) {
-  const CDItem item = ran("F5.5", reproduceF55);
-  EXPECT_TRUE(named(item, CDVerdict::reproduced).contains("place"));
-  EXPECT_TRUE(named(item, CDVerdict::reproduced).contains("specific"));
-  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{"dhr"});
-  EXPECT_EQ(named(item, CDVerdict::notTestable), std::set<std::string>{"sample"});
+  const Item item = ran("F5.5", reproduceF55);
+  EXPECT_TRUE(named(item, Verdict::reproduced).contains("place"));
+  EXPECT_TRUE(named(item, Verdict::reproduced).contains("specific"));
+  EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{"dhr"});
+  EXPECT_EQ(named(item, Verdict::notTestable), std::set<std::string>{"sample"});
   const double until = std::stod(valuesOf(item).at("until"));
   EXPECT_GT(until,
             std::stod(valuesOf(item).at("sigma")));  // the thesis's sample is on the safe side
@@ -23,8 +23,8 @@ TEST(Section54Published, Figure55) {
 }
 
 TEST(Section54Published, Figure56) {
-  const CDItem item = ran("F5.6", reproduceF56);
-  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"better", "half"}));
-  EXPECT_EQ(named(item, CDVerdict::notTestable), std::set<std::string>{"values"});
+  const Item item = ran("F5.6", reproduceF56);
+  EXPECT_EQ(named(item, Verdict::reproduced), (std::set<std::string>{"better", "half"}));
+  EXPECT_EQ(named(item, Verdict::notTestable), std::set<std::string>{"values"});
   EXPECT_GT(std::stod(valuesOf(item).at("all")), 1000);
 }

@@ -1,5 +1,5 @@
 // The verdicts of the items of thesis chapter 5 (nw/thesis/Section5.nw).
-#include "thesis/Section5.hpp"
+#include "malus/thesis/Section5.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 using namespace malus;
 
 TEST(Section5Invariant, TheThreeFormsOfTheOlderLobe) {
-  const CDItem item = ran("F5.1", reproduceF51);
-  EXPECT_EQ(named(item, CDVerdict::reproduced),
+  const Item item = ran("F5.1", reproduceF51);
+  EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"cone", "cosine", "exponential", "height.width"}));
-  EXPECT_EQ(named(item, CDVerdict::notTestable), (std::set<std::string>{"formulas"}));
-  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
+  EXPECT_EQ(named(item, Verdict::notTestable), (std::set<std::string>{"formulas"}));
+  EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{});
 }

@@ -1,5 +1,5 @@
 // The plate and the sensor of section 7.1 (nw/thesis/Section71.nw).
-#include "thesis/Section71.hpp"
+#include "malus/thesis/Section71.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 using namespace malus;
 
 namespace {
-CDTable printed(const std::string& name) {
-  return CDTable::read("validation/printed/" + name + ".csv");
+Table printed(const std::string& name) {
+  return Table::read("validation/printed/" + name + ".csv");
 }
 
 // The matrix of eq 7.8 typed from the thesis, with the sign of f33 that its table 7.1 needs.
@@ -30,7 +30,7 @@ TEST(Section71Published, OurMatrixRoundsToThePaperMatrix) {
 
 TEST(Section71Published, FacetTermOfFindingOne) {
   const CDMuellerMatrix f =
-      copperPlateBRDF(CDDiffuseTerm::none);  // numbers of finding 1, six digits
+      copperPlateBRDF(DiffuseTerm::none);  // numbers of finding 1, six digits
   EXPECT_NEAR(f.getMueller(0, 0), 1.17187, 5e-6);
   EXPECT_NEAR(f.getMueller(0, 1), 0.040058, 5e-7);
   EXPECT_NEAR(f.getMueller(3, 3), -1.131418, 5e-7);
@@ -60,7 +60,7 @@ TEST(Section71Identity, ErrorColumnsMendAPlantedMisprint) {
       "DoP,unpolarized_L0,polarized_L0,detected_L0,unpolarized_error,polarized_error\n"
       "0.2,102.19,102.59,102.07,1.84,1.44\n"
       "0.2,102.19,102.59,104.07,1.84,1.44\n");
-  const CDTable table = CDTable::parse(text, "planted");
+  const Table table = Table::parse(text, "planted");
   EXPECT_EQ(mendedByErrors(table, 0), "104.07");
   EXPECT_EQ(mendedByErrors(table, 1), "104.07");
 }
@@ -68,27 +68,27 @@ TEST(Section71Identity, ErrorColumnsMendAPlantedMisprint) {
 TEST(Section71Published, EveryPrintedNumberIsMetOrIsAnErratum) {
   struct {
     const char* id;
-    CDItemFunction function;
+    ItemFunction function;
     std::size_t errata;
   } const items[] = {{"T7.1", reproduceT71, 1}, {"T7.2", reproduceT72, 1},
                      {"T7.3", reproduceT73, 1}, {"T7.4", reproduceT74, 11},
                      {"C1", reproduceC1, 0},    {"C2", reproduceC2, 0}};
   for (const auto& [id, function, errata] : items) {
-    const CDItem item = ran(id, function);
-    EXPECT_EQ(named(item, CDVerdict::differs).size(), 0u) << id;
-    EXPECT_EQ(named(item, CDVerdict::erratum).size(), errata) << id;
+    const Item item = ran(id, function);
+    EXPECT_EQ(named(item, Verdict::differs).size(), 0u) << id;
+    EXPECT_EQ(named(item, Verdict::erratum).size(), errata) << id;
   }
 }
 
 TEST(Section71Published, NegativeControlAnotherInputOfThePlateIsSeen) {
   const Corrupted text("text.csv", "copper.k,2.950", "copper.k,2.951");
-  EXPECT_EQ(named(ran("T7.1", reproduceT71, text.data), CDVerdict::differs),
+  EXPECT_EQ(named(ran("T7.1", reproduceT71, text.data), Verdict::differs),
             (std::set<std::string>{"inputs"}));
-  const CDItem item("T7.1", ".", "validation");
-  EXPECT_THROW(printedInText(item, "copper.colour"), CDInputError);
+  const Item item("T7.1", ".", "validation");
+  EXPECT_THROW(printedInText(item, "copper.colour"), InputError);
 }
 
 TEST(Section71Published, NegativeControlOneDigitChangedIsSeen) {
   const Corrupted table("T7.2.csv", "103.58", "103.59");
-  EXPECT_EQ(named(ran("T7.2", reproduceT72, table.data), CDVerdict::differs).size(), 1u);
+  EXPECT_EQ(named(ran("T7.2", reproduceT72, table.data), Verdict::differs).size(), 1u);
 }

@@ -1,5 +1,5 @@
 // Curves through the BRDF and the direct evaluation of sections 7.2 to 7.4 (nw/thesis/Section72.nw).
-#include "thesis/Section72.hpp"
+#include "malus/thesis/Section72.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -41,8 +41,8 @@ RC_GTEST_PROP(Section72Identity, ModelAgreesWithDirectEvaluation, ()) {
   const double theta_i = drawn(1, 85) * degree, theta_r = drawn(1, 85) * degree;
   const double phi = drawn(0, 360) * degree, n = drawn(0.1, 3), k = drawn(0, 8),
                sigma = drawn(0.1, 0.6);
-  const BRDFTorranceSparrow model(n, k, sigma, {CDShadowing::vGroove, CDDiffuseTerm::none});
-  const CDMuellerMatrix ours = model.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi));
+  const BRDFTorranceSparrow model(n, k, sigma, {Shadowing::vGroove, DiffuseTerm::none});
+  const CDMuellerMatrix ours = model.at(BRDFGeometry::fromAngles(theta_i, theta_r, phi));
   const CDMuellerMatrix direct = directBRDF(CDVector::fromAngles(theta_i, 0),
                                             CDVector::fromAngles(theta_r, phi), n, k, sigma);
   RC_PRE(direct.getMueller(0, 0) > 1e-200);
@@ -51,9 +51,8 @@ RC_GTEST_PROP(Section72Identity, ModelAgreesWithDirectEvaluation, ()) {
 }
 
 TEST(Section72Identity, NegativeControlThirdDigitOfTheIndexIsSeen) {
-  const auto geometry = CDBRDFGeometry::fromDegrees(30, 40, 120);
-  const BRDFTorranceSparrow model(0.406, 2.95, 0.2,
-                                  {CDShadowing::vGroove, CDDiffuseTerm::none});
+  const auto geometry = BRDFGeometry::fromDegrees(30, 40, 120);
+  const BRDFTorranceSparrow model(0.406, 2.95, 0.2, {Shadowing::vGroove, DiffuseTerm::none});
   EXPECT_GT(
       apart(model.at(geometry),
             directBRDF(CDVector::fromAngles(30 * degree, 0),
@@ -64,9 +63,9 @@ TEST(Section72Identity, NegativeControlThirdDigitOfTheIndexIsSeen) {
 TEST(Section72Identity, CurvesRunFromBackwardToForward) {
   const BRDFTorranceSparrow brdf(1.5, 0, 0.1);
   EXPECT_EQ(inPlane(brdf, 30)(20),
-            brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 180)).getMueller(0, 0));
+            brdf.at(BRDFGeometry::fromDegrees(30, 20, 180)).getMueller(0, 0));
   EXPECT_EQ(inPlane(brdf, 30)(-20),
-            brdf.at(CDBRDFGeometry::fromDegrees(30, 20, 0)).getMueller(0, 0));
+            brdf.at(BRDFGeometry::fromDegrees(30, 20, 0)).getMueller(0, 0));
   EXPECT_GT(inPlane(brdf, 30)(30), inPlane(brdf, 30)(-30));
 }
 
@@ -74,7 +73,7 @@ TEST(Section72Published, WhatDiffersIsWhatTheChapterTells) {
   // sec 5.2.1, significant at 45 deg; sec 7.3.1, linear shift; sec 7.3.2: widths at half maximum, forward peaks and their overlay
   struct {
     const char* id;
-    CDItemFunction function;
+    ItemFunction function;
     std::size_t differs;
   } const items[] = {
       {"F7.2", reproduceF72, 0}, {"F7.3", reproduceF73, 0},   {"F7.4", reproduceF74, 1},
@@ -82,6 +81,6 @@ TEST(Section72Published, WhatDiffersIsWhatTheChapterTells) {
       {"F7.8", reproduceF78, 1}, {"F7.10", reproduceF710, 0}, {"F7.11", reproduceF711, 0},
       {"C3", reproduceC3, 1},    {"C4", reproduceC4, 2}};
   for (const auto& [id, function, differs] : items) {
-    EXPECT_EQ(named(ran(id, function), CDVerdict::differs).size(), differs) << id;
+    EXPECT_EQ(named(ran(id, function), Verdict::differs).size(), differs) << id;
   }
 }

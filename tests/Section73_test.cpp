@@ -1,5 +1,5 @@
 // The copper plates of section 7.3.3, simulated (nw/thesis/Section73.nw).
-#include "thesis/Section73.hpp"
+#include "malus/thesis/Section73.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,25 +9,25 @@
 #include <string>
 
 #include "Items.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double degree = std::numbers::pi / 180;
-constexpr CDCopperBench perfect{0, 0, 0, 0, 0, 20};
+constexpr CopperBench perfect{0, 0, 0, 0, 0, 20};
 
 /// Hagemann's copper at 650 nm, interpolated by hand: n = 0.272 - 0.9233 * 0.058, k = 3.24 + 0.9233 * 0.43.
 double copper650(double sigma, double view_rad) {
   const double part = (650 - 619.9) / (652.5 - 619.9);
   return BRDFTorranceSparrow(0.272 - 0.058 * part, 3.24 + 0.43 * part, sigma)
-      .at(CDBRDFGeometry::fromAngles(30 * degree, view_rad, std::numbers::pi))
+      .at(BRDFGeometry::fromAngles(30 * degree, view_rad, std::numbers::pi))
       .getScalar();
 }
 }  // namespace
 
 TEST(Section73Identity, APerfectBenchSeesTheModel) {
-  const CDCopperScan scan = scanCopper({150, 0.2}, perfect, 0);
+  const CopperScan scan = scanCopper({150, 0.2}, perfect, 0);
   ASSERT_EQ(scan.view_rad.size(), 13u);
   for (std::size_t j = 0; j < scan.view_rad.size(); ++j) {
     // angles that went through a tangent and back
@@ -37,20 +37,20 @@ TEST(Section73Identity, APerfectBenchSeesTheModel) {
 }
 
 TEST(Section73Identity, APlateIsTheMeanOfItsParts) {
-  const CDCopperScan fine = scanCopper({0, 0.1}, perfect, 0),
-                     rough = scanCopper({0, 0.2}, perfect, 0),
-                     both = scanCopper({0, 0.1, 0.25}, perfect, 0);
+  const CopperScan fine = scanCopper({0, 0.1}, perfect, 0),
+                   rough = scanCopper({0, 0.2}, perfect, 0),
+                   both = scanCopper({0, 0.1, 0.25}, perfect, 0);
   for (std::size_t j = 0; j < both.view_rad.size(); ++j)
     EXPECT_NEAR(both.f[0][j], 0.75 * fine.f[0][j] + 0.25 * rough.f[0][j], 1e-12);  // rounding
 }
 
 // A lamp changes both colours alike, and the points of one run only.
 TEST(Section73Invariant, LampAndRuns) {
-  const CDCopperBench unsteady{0, 0.03, 0.02, 0, 0, 1};
-  const CDCopperScan exact = scanCopper({150, 0.2}, perfect, 0),
-                     one = scanCopper({150, 0.2}, unsteady, 1),
-                     again = scanCopper({150, 0.2}, unsteady, 1),
-                     two = scanCopper({150, 0.2}, unsteady, 2);
+  const CopperBench unsteady{0, 0.03, 0.02, 0, 0, 1};
+  const CopperScan exact = scanCopper({150, 0.2}, perfect, 0),
+                   one = scanCopper({150, 0.2}, unsteady, 1),
+                   again = scanCopper({150, 0.2}, unsteady, 1),
+                   two = scanCopper({150, 0.2}, unsteady, 2);
   EXPECT_EQ(one.f[0], again.f[0]);
   EXPECT_NE(one.f[0], two.f[0]);
   for (std::size_t j = 0; j < one.view_rad.size(); ++j)
@@ -61,7 +61,7 @@ TEST(Section73Invariant, LampAndRuns) {
 TEST(Section73Invariant, TheLampScattersAsTold) {
   constexpr int runs = 400;
   const double exact = scanCopper({150, 0.2}, perfect, 0).f[0].back();
-  const auto scatter = [&](const CDCopperBench& bench) {
+  const auto scatter = [&](const CopperBench& bench) {
     double squares = 0;
     for (int run = 0; run < runs; ++run)
       squares += std::pow(scanCopper({150, 0.2}, bench, run).f[0].back() / exact - 1, 2);
@@ -77,12 +77,12 @@ TEST(Section73Invariant, TheLampScattersAsTold) {
 // Near the normal, where the lamp's part is small, 5 mm at half a metre move the point along the slope of the lobe.
 TEST(Section73Invariant, TheTapeMeasureScattersAsTold) {
   constexpr int runs = 400;
-  const CDCopperScan exact = scanCopper({150, 0.2}, perfect, 0);
+  const CopperScan exact = scanCopper({150, 0.2}, perfect, 0);
   const double view = exact.view_rad.back(), step = 1e-4;
   const auto f = [&](double lamp, double viewer) {
     const double part = (650 - 619.9) / (652.5 - 619.9);
     return BRDFTorranceSparrow(0.272 - 0.058 * part, 3.24 + 0.43 * part, 0.2)
-        .at(CDBRDFGeometry::fromAngles(lamp, viewer, std::numbers::pi))
+        .at(BRDFGeometry::fromAngles(lamp, viewer, std::numbers::pi))
         .getScalar();
   };
   const double lamp = 30 * degree;
@@ -102,9 +102,9 @@ TEST(Section73Invariant, TheTapeMeasureScattersAsTold) {
 
 // A cone blurs: what it takes from the peak is half the curvature times the mean square angle.
 TEST(Section73Identity, ConesBlur) {
-  const CDCopperScan exact = scanCopper({150, 0.1}, perfect, 0),
-                     lamp = scanCopper({150, 0.1}, {0, 0, 0, 0, 5, 20}, 0),
-                     optic = scanCopper({150, 0.1}, {0, 0, 0, 3, 0, 20}, 0);
+  const CopperScan exact = scanCopper({150, 0.1}, perfect, 0),
+                   lamp = scanCopper({150, 0.1}, {0, 0, 0, 0, 5, 20}, 0),
+                   optic = scanCopper({150, 0.1}, {0, 0, 0, 3, 0, 20}, 0);
   const std::size_t peak = 5;  // 30 degrees
   EXPECT_LT(lamp.f[1][peak], exact.f[1][peak]);
   EXPECT_LT(optic.f[1][peak], exact.f[1][peak]);
@@ -115,10 +115,10 @@ TEST(Section73Identity, ConesBlur) {
 }
 
 TEST(Section73Invariant, FigureSevenNineHasItsVerdicts) {
-  const CDItem item = ran("F7.9", reproduceF79);
-  EXPECT_EQ(named(item, CDVerdict::notTestable),
+  const Item item = ran("F7.9", reproduceF79);
+  EXPECT_EQ(named(item, Verdict::notTestable),
             (std::set<std::string>{"trend", "outside", "chosen"}));
-  EXPECT_EQ(named(item, CDVerdict::reproduced),
+  EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"sigma.60.450", "sigma.60.650", "sigma.150.450",
                                    "sigma.150.650", "corrected.60", "corrected.150",
                                    "wavelengths.60", "wavelengths.150", "distance", "twenty",

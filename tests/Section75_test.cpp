@@ -1,5 +1,5 @@
 // The pictures of sections 7.1 and 7.5 to 7.8: scene, cheap items and their controls (nw/thesis/Section75.nw, FlatPlate.nw, Section76.nw).
-#include "thesis/Section75.hpp"
+#include "malus/thesis/Section75.hpp"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "Items.hpp"
-#include "light/CDError.hpp"
-#include "thesis/FlatPlate.hpp"
-#include "thesis/Pictures.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/thesis/FlatPlate.hpp"
+#include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
 namespace {
-CDScene small(const std::string& name, std::vector<int> rays) {
-  CDScene scene = chunkyScene(name, 32);
+Scene small(const std::string& name, std::vector<int> rays) {
+  Scene scene = chunkyScene(name, 32);
   scene.radiometry.rays = std::move(rays);
   return scene;
 }
@@ -42,14 +42,14 @@ struct OtherScenes : Scratch {
 }  // namespace
 
 TEST(Section75Published, RoughnessesAreThoseOfTable75) {
-  const CDItem item = ran("T7.5", reproduceT75);
-  EXPECT_EQ(named(item, CDVerdict::reproduced).size(), 8u);
+  const Item item = ran("T7.5", reproduceT75);
+  EXPECT_EQ(named(item, Verdict::reproduced).size(), 8u);
   EXPECT_EQ(item.claims().size(), 8u);
 }
 
 TEST(Section75Published, NegativeControlAnotherRoughnessIsSeen) {
   const Corrupted table("T7.5.csv", "5,0.3", "5,0.25");
-  EXPECT_EQ(named(ran("T7.5", reproduceT75, table.data), CDVerdict::differs),
+  EXPECT_EQ(named(ran("T7.5", reproduceT75, table.data), Verdict::differs),
             (std::set<std::string>{"sigma.5", "elsewhere.5"}));
 }
 
@@ -57,41 +57,41 @@ TEST(Section75Published, NegativeControlARoughnessChangedInASceneFileIsSeen) {
   const std::string was = R"("sigma": 0.3)", is = R"("sigma": 0.4)";
   {
     const OtherScenes scenes("chunky-bar-copper.json", was, is);
-    EXPECT_EQ(named(ran("T7.5", reproduceT75), CDVerdict::differs),
+    EXPECT_EQ(named(ran("T7.5", reproduceT75), Verdict::differs),
               (std::set<std::string>{"sigma.5"}));
   }
   const OtherScenes scenes("rochester-day.json", was, is);
-  EXPECT_EQ(named(ran("T7.5", reproduceT75), CDVerdict::differs),
+  EXPECT_EQ(named(ran("T7.5", reproduceT75), Verdict::differs),
             (std::set<std::string>{"elsewhere.5"}));
 }
 
 TEST(FlatPlatePublished, TheTracedColumnIsMetButForTheDigitsOfFinding3) {
-  const CDItem item = ran("F7.1", reproduceF71);
-  EXPECT_EQ(named(item, CDVerdict::differs),
+  const Item item = ran("F7.1", reproduceF71);
+  EXPECT_EQ(named(item, Verdict::differs),
             (std::set<std::string>{"traced2.L0", "traced3.DoP"}));
-  EXPECT_EQ(named(item, CDVerdict::erratum), (std::set<std::string>{"traced3.L3", "sides"}));
+  EXPECT_EQ(named(item, Verdict::erratum), (std::set<std::string>{"traced3.L3", "sides"}));
 }
 
 TEST(FlatPlatePublished, NegativeControlAChangedDigitIsSeen) {
   const Corrupted table("T7.1.csv", "34.07", "34.08");
-  EXPECT_EQ(named(ran("F7.1", reproduceF71, table.data), CDVerdict::differs),
+  EXPECT_EQ(named(ran("F7.1", reproduceF71, table.data), Verdict::differs),
             (std::set<std::string>{"traced2.L0", "traced2.L1", "traced3.DoP"}));
 }
 
 TEST(Section75Invariant, APictureIsTheSameWheneverItIsMade) {
-  const CDScene scene = small("chunky-bar-copper", {21, 1});
-  const CDStokesImage one = renderImage(scene), two = renderImage(scene);
+  const Scene scene = small("chunky-bar-copper", {21, 1});
+  const StokesImage one = renderImage(scene), two = renderImage(scene);
   EXPECT_EQ(one.stokes, two.stokes);
   EXPECT_EQ(one.facet, two.facet);
   EXPECT_EQ(one.rays, two.rays);
-  CDScene other = scene;  // negative control
+  Scene other = scene;  // negative control
   other.radiometry.seed = 2;
   EXPECT_NE(renderImage(other).stokes, one.stokes);
 }
 
 TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
   // rho/pi (E cos 30 + 0.05 pi); the grid of 1000 rays sums the cosine to some 1e-3
-  const CDStokesImage image = renderImage(small("chunky-bar-lambertian", {1001}));
+  const StokesImage image = renderImage(small("chunky-bar-lambertian", {1001}));
   for (const auto& [top, reflectance] : {std::pair{"5.top", 0.6}, {"2.top", 0.2}}) {
     const double expected = reflectance / std::numbers::pi *
                             (std::cos(std::numbers::pi / 6) + 0.05 * std::numbers::pi);
@@ -103,8 +103,8 @@ TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
 }
 
 TEST(Section75Identity, OneReflectionMakesNoCircularLight) {
-  const CDStokesImage image = renderImage(small("chunky-bar-copper", {21}));
+  const StokesImage image = renderImage(small("chunky-bar-copper", {21}));
   for (const double S3 : image.stokes[3]) ASSERT_EQ(S3, 0);
-  const CDStokesImage twice = renderImage(small("chunky-bar-copper", {21, 1}));
+  const StokesImage twice = renderImage(small("chunky-bar-copper", {21, 1}));
   EXPECT_NE(twice.stokes[3], image.stokes[3]);  // negative control
 }

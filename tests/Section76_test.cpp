@@ -1,5 +1,5 @@
 // The two flights over the chunky bar (nw/thesis/Section76.nw).
-#include "thesis/Section76.hpp"
+#include "malus/thesis/Section76.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "Items.hpp"
-#include "thesis/Pictures.hpp"
+#include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
@@ -16,25 +16,25 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 
 /// Where the axis of a frame's camera meets the height of a point, from that point.
-double missOf(const CDScene& scene, std::size_t frame, const CDVector& point) {
-  const CDPose pose = scene.platform.at(frame);
+double missOf(const Scene& scene, std::size_t frame, const CDVector& point) {
+  const Pose pose = scene.platform.at(frame);
   const CDVector down = -pose.back;
   const CDVector met = pose.position + down * ((point.z - pose.position.z) / down.z);
   return (met - point).getLength();
 }
 
 /// How far the image is turned clockwise from having its x axis horizontal.
-double rollOf_deg(const CDPose& pose) {
+double rollOf_deg(const Pose& pose) {
   const CDVector level = normalized(cross(CDVector{0, 1, 0}, pose.back));
   return std::atan2(dot(cross(pose.right, level), pose.back), dot(pose.right, level)) / degree;
 }
 }  // namespace
 
 TEST(Section76Identity, TheNadirCameraLooksStraightDownNineTimes) {
-  const CDScene scene = chunkyScene("flight-nadir", 16);
+  const Scene scene = chunkyScene("flight-nadir", 16);
   ASSERT_EQ(scene.platform.frames(), 9u);
   for (std::size_t frame = 0; frame < 9; ++frame) {
-    const CDPose pose = scene.platform.at(frame);
+    const Pose pose = scene.platform.at(frame);
     EXPECT_NEAR(pose.back.z, 1, 1e-15);
     EXPECT_EQ(pose.position.z, 15);
     EXPECT_NEAR(pose.position.x, -8 + 2.0 * static_cast<double>(frame), 1e-12);
@@ -43,19 +43,19 @@ TEST(Section76Identity, TheNadirCameraLooksStraightDownNineTimes) {
 }
 
 TEST(Section76Identity, TheStaringCameraIsPointedAtTheCentreFiveTimes) {
-  const CDScene scene = chunkyScene("flight-staring", 16);
+  const Scene scene = chunkyScene("flight-staring", 16);
   ASSERT_EQ(scene.platform.frames(), 5u);
   for (std::size_t frame = 0; frame < 5; ++frame)
     EXPECT_LT(missOf(scene, frame, {0, 0, 0.5}), 1e-12) << frame;
-  const CDScene other = chunkyScene("flight-staring", 16,  // negative control
-                                    R"({"platform": {"target_m": [0.1, 0, 0.5]}})");
+  const Scene other = chunkyScene("flight-staring", 16,  // negative control
+                                  R"({"platform": {"target_m": [0.1, 0, 0.5]}})");
   EXPECT_GT(missOf(other, 1, {0, 0, 0.5}), 0.09);
 }
 
 // "The camera positions were the same as the previous simulation" (section 7.6.2): every second one.
 TEST(Section76Published, BothFlightsHaveTheSamePositions) {
-  const CDPlatform nadir = chunkyScene("flight-nadir", 16).platform,
-                   staring = chunkyScene("flight-staring", 16).platform;
+  const Platform nadir = chunkyScene("flight-nadir", 16).platform,
+                 staring = chunkyScene("flight-staring", 16).platform;
   for (std::size_t frame = 0; frame < 5; ++frame) {
     const CDVector here = staring.at(frame).position, there = nadir.at(2 * frame).position;
     EXPECT_LT((here - there).getLength(), 1e-12) << frame;
@@ -67,10 +67,10 @@ TEST(Section76Published, BothFlightsHaveTheSamePositions) {
 
 // "... and rotated clockwise about the optical axis" (section 7.6.2)
 TEST(Section76Published, TheStaringCameraIsTurnedMoreFromFrameToFrame) {
-  const CDPlatform staring = chunkyScene("flight-staring", 16).platform,
-                   level = chunkyScene("flight-staring", 16,
-                                       R"({"platform": {"roll_deg": [0, 0, 0, 0, 0]}})")
-                               .platform;
+  const Platform staring = chunkyScene("flight-staring", 16).platform,
+                 level = chunkyScene("flight-staring", 16,
+                                     R"({"platform": {"roll_deg": [0, 0, 0, 0, 0]}})")
+                             .platform;
   for (std::size_t frame = 1; frame < 5; ++frame) {
     EXPECT_GT(std::abs(rollOf_deg(staring.at(frame))),
               std::abs(rollOf_deg(staring.at(frame - 1))) + 5);
@@ -83,13 +83,13 @@ TEST(Section76Invariant, AMattTopDoesNotFollowTheCamera) {
   const char* const matt =
       R"({"materials": {"copper-020": {"model": "lambertian", "reflectance": 0.2, "n": null, "k": null, "sigma": null}},
           "radiometry": {"rays": [401]}})";
-  const CDScene scene = chunkyScene("flight-staring", 48, matt);
+  const Scene scene = chunkyScene("flight-staring", 48, matt);
   const double expected =
       0.2 / std::numbers::pi * (std::cos(60 * degree) + 0.05 * std::numbers::pi);
   double copper_low = 1e9, copper_high = 0;
   for (std::size_t frame = 0; frame < 5; ++frame) {
-    const CDStokesImage image = renderImage(scene, frame);
-    // the grid sums the cosine to a few parts in a thousand (chapter CDRadiometry)
+    const StokesImage image = renderImage(scene, frame);
+    // the grid sums the cosine to a few parts in a thousand (chapter Radiometry)
     EXPECT_NEAR(meanOver(image.stokes[0], insideOf(image, "4.top")), expected, 3e-3 * expected);
     const double copper = meanOver(image.stokes[0], insideOf(image, "3.top"));
     copper_low = std::min(copper_low, copper), copper_high = std::max(copper_high, copper);
@@ -98,7 +98,7 @@ TEST(Section76Invariant, AMattTopDoesNotFollowTheCamera) {
 }
 
 TEST(Section76Published, FlightsAreDrawnWithTheirFrames) {
-  const CDItem item = ran("F7.25", reproduceF725);
-  EXPECT_EQ(named(item, CDVerdict::reproduced), std::set<std::string>{"frames"});
-  EXPECT_EQ(named(item, CDVerdict::notTestable), std::set<std::string>{"profiles"});
+  const Item item = ran("F7.25", reproduceF725);
+  EXPECT_EQ(named(item, Verdict::reproduced), std::set<std::string>{"frames"});
+  EXPECT_EQ(named(item, Verdict::notTestable), std::set<std::string>{"profiles"});
 }

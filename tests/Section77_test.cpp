@@ -1,5 +1,5 @@
 // The copper bar under a polarised sky, and the checks of that sky (nw/thesis/Section77.nw).
-#include "thesis/Section77.hpp"
+#include "malus/thesis/Section77.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "Items.hpp"
-#include "thesis/Pictures.hpp"
+#include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
@@ -18,7 +18,7 @@ constexpr double degree = std::numbers::pi / 180;
 }
 
 TEST(Section77Identity, TheSceneFileHasTheSunAndTheBandsOfTheThesis) {
-  const CDScene scene = chunkyScene("chunky-bar-sky", 16);
+  const Scene scene = chunkyScene("chunky-bar-sky", 16);
   ASSERT_EQ(scene.world.grid->size(), 2u);
   EXPECT_EQ((*scene.world.grid)[0].nm(), 450);
   EXPECT_EQ((*scene.world.grid)[1].nm(), 650);
@@ -30,9 +30,9 @@ TEST(Section77Identity, TheSceneFileHasTheSunAndTheBandsOfTheThesis) {
 
 // The first reflection of polarised light by copper makes S3; that of unpolarised light does not.
 TEST(Section77Identity, APolarisedSkyMakesCircularLightAtTheFirstReflection) {
-  const auto largestS3 = [](const CDScene& scene) {
+  const auto largestS3 = [](const Scene& scene) {
     double most = 0;
-    const CDStokesImage image = renderImage(scene);
+    const StokesImage image = renderImage(scene);
     for (const std::size_t pixel : insideOf(image, "4.top"))
       most = std::max(most, std::abs(image.stokes[3][pixel]));
     return most;
@@ -51,7 +51,7 @@ TEST(Section77Invariant, TheMeridianIsAMirror) {
   const char* const equal = R"({"sun": {"azimuth_deg": 180},
       "materials": {"copper-010": {"sigma": 0.2}, "copper-015": {"sigma": 0.2}, "copper-030": {"sigma": 0.2}},
       "radiometry": {"rays": [2001], "sampling": "importance"}})";
-  const CDStokesImage image = renderImage(chunkyScene("chunky-bar-sky", 32, equal));
+  const StokesImage image = renderImage(chunkyScene("chunky-bar-sky", 32, equal));
   const auto top = [&](const char* name, int k) {
     return meanOver(image.stokes[k], insideOf(image, name));
   };
@@ -63,7 +63,7 @@ TEST(Section77Invariant, TheMeridianIsAMirror) {
           << left << " S" << k;  // noise of 2000 rays
     }
   // negative control: the sun off the meridian; two chunks are not mirror images any more
-  const CDStokesImage askew = renderImage(
+  const StokesImage askew = renderImage(
       chunkyScene("chunky-bar-sky", 32,
                   std::string(equal).replace(std::string(equal).find("180"), 3, "160")));
   EXPECT_GT(std::abs(meanOver(askew.stokes[0], insideOf(askew, "4.top")) -
@@ -72,17 +72,17 @@ TEST(Section77Invariant, TheMeridianIsAMirror) {
 }
 
 TEST(Section77Published, TheSkyMeetsWhatIsPrinted) {
-  EXPECT_TRUE(named(ran("X.sky", reproduceXSky), CDVerdict::differs).empty());
+  EXPECT_TRUE(named(ran("X.sky", reproduceXSky), Verdict::differs).empty());
 }
 
 TEST(Section77Published, NegativeControlAChangedDigitOfAPrintedSkyIsSeen) {
   const Corrupted table("rayleigh.csv", "0.20888340", "0.20888342");
-  EXPECT_EQ(named(ran("X.sky", reproduceXSky, table.data), CDVerdict::differs),
+  EXPECT_EQ(named(ran("X.sky", reproduceXSky, table.data), Verdict::differs),
             std::set<std::string>{"natraj"});
 }
 
 TEST(Section77Invariant, CopperSeesThatTheSkyIsPolarisedAndMattChunksDoNot) {
-  const CDItem item = ran("X.realsky", reproduceXRealSky);
-  EXPECT_EQ(named(item, CDVerdict::reproduced), (std::set<std::string>{"copper", "matt"}));
-  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{});
+  const Item item = ran("X.realsky", reproduceXRealSky);
+  EXPECT_EQ(named(item, Verdict::reproduced), (std::set<std::string>{"copper", "matt"}));
+  EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{});
 }

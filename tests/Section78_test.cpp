@@ -1,5 +1,5 @@
 // The day over Rochester (nw/thesis/Section78.nw).
-#include "thesis/Section78.hpp"
+#include "malus/thesis/Section78.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "Items.hpp"
-#include "thesis/Pictures.hpp"
+#include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
@@ -20,7 +20,7 @@ constexpr double degree = std::numbers::pi / 180;
 }
 
 TEST(Section78Identity, TwelveHoursAnHourApart) {
-  const std::vector<CDHourOfDay> day = rochesterDay();
+  const std::vector<HourOfDay> day = rochesterDay();
   ASSERT_EQ(day.size(), 12u);
   for (std::size_t i = 0; i < day.size(); ++i) {
     EXPECT_EQ(day[i].hour, 7 + static_cast<int>(i));
@@ -35,13 +35,13 @@ TEST(Section78Identity, TwelveHoursAnHourApart) {
 // by 15 degrees an hour. Equation of time and declination move in half a day by less than 0.01 deg
 // (15 s a day) and 0.06 deg; from the one hour of the highest sun the others follow within 0.1 deg.
 TEST(Section78Invariant, TheSunTurnsByFifteenDegreesAnHour) {
-  const std::vector<CDHourOfDay> day = rochesterDay();
+  const std::vector<HourOfDay> day = rochesterDay();
   const double lat = rochester_latitude_deg * degree;
-  const auto hourAngle = [&](const CDHourOfDay& at) {
+  const auto hourAngle = [&](const HourOfDay& at) {
     const CDVector d = at.sun.toSun();
     return std::atan2(-d.x, d.z * std::cos(lat) - d.y * std::sin(lat)) / degree;
   };
-  for (const CDHourOfDay& at : day)
+  for (const HourOfDay& at : day)
     EXPECT_NEAR(hourAngle(at) - hourAngle(day[0]), 15.0 * (at.hour - 7), 0.1);
   EXPECT_GT(std::abs(hourAngle(day[11]) - hourAngle(day[0]) - 15.0 * 10.9),
             0.1);  // negative control
@@ -49,11 +49,11 @@ TEST(Section78Invariant, TheSunTurnsByFifteenDegreesAnHour) {
 
 namespace {
 /// Largest angle between the suns of a scene's frames and those of the chapter [rad].
-double largestDifference(const CDScene& scene) {
+double largestDifference(const Scene& scene) {
   double most = 0;
-  const std::vector<CDHourOfDay> day = rochesterDay();
+  const std::vector<HourOfDay> day = rochesterDay();
   for (std::size_t hour = 0; hour < scene.platform.frames(); ++hour) {
-    CDWorld moved = scene.world;
+    World moved = scene.world;
     scene.move_sun(moved, scene.platform.time_s(hour));
     most = std::max(most, cross(moved.sun->to_sun, day.at(hour).sun.toSun()).getLength());
   }
@@ -62,7 +62,7 @@ double largestDifference(const CDScene& scene) {
 }  // namespace
 
 TEST(Section78Identity, TheSceneFileHasTheSunsOfTheChapter) {
-  const CDScene scene = chunkyScene("rochester-day", 16);
+  const Scene scene = chunkyScene("rochester-day", 16);
   ASSERT_EQ(scene.platform.frames(), rochesterDay().size());
   EXPECT_LT(largestDifference(scene), 1e-7);  // Julian days resolve 40 microseconds
   EXPECT_GT(largestDifference(chunkyScene(    // negative control: a minute later
@@ -72,19 +72,19 @@ TEST(Section78Identity, TheSceneFileHasTheSunsOfTheChapter) {
 
 // Elementary: a Lambertian top under sun and uniform sky has the radiance rho/pi (E cos z + pi L).
 TEST(Section78Identity, AMattTopFollowsTheCosineOfTheSun) {
-  const CDScene scene = chunkyScene(
+  const Scene scene = chunkyScene(
       "rochester-day", 32,
       R"({"materials": {"copper-010": {"model": "lambertian", "reflectance": 0.2, "n": null, "k": null, "sigma": null}},
           "radiometry": {"rays": [401]}})");
-  const std::vector<CDHourOfDay> day = rochesterDay();
+  const std::vector<HourOfDay> day = rochesterDay();
   for (std::size_t hour = 0; hour < day.size(); ++hour) {
-    const CDStokesImage image = renderImage(scene, hour);
+    const StokesImage image = renderImage(scene, hour);
     const double top = meanOver(image.stokes[0], insideOf(image, "2.top"));
     const auto expected = [&](std::size_t at) {
       return 0.2 / std::numbers::pi *
              (std::cos(day[at].sun.zenith_rad) + 0.05 * std::numbers::pi);
     };
-    // the grid sums the cosine to a few parts in a thousand (chapter CDRadiometry)
+    // the grid sums the cosine to a few parts in a thousand (chapter Radiometry)
     EXPECT_NEAR(top, expected(hour), 3e-3 * expected(hour)) << hour;
     if (hour < 3) {  // negative control: the sun of the next hour
       EXPECT_GT(std::abs(top - expected(hour + 1)), 3e-3 * expected(hour)) << hour;
@@ -97,9 +97,9 @@ TEST(Section78Published, TheDayShowsWhatTheThesisSaw) {
        {std::pair{"F7.39", &reproduceF739}, std::pair{"F7.40", &reproduceF740},
         std::pair{"F7.41", &reproduceF741}, std::pair{"F7.42", &reproduceF742},
         std::pair{"F7.43", &reproduceF743}, std::pair{"F7.44", &reproduceF744}}) {
-    const CDItem item = ran(id, function);
-    EXPECT_TRUE(named(item, CDVerdict::differs).empty()) << id;
-    EXPECT_GE(named(item, CDVerdict::reproduced).size(), 1u) << id;
+    const Item item = ran(id, function);
+    EXPECT_TRUE(named(item, Verdict::differs).empty()) << id;
+    EXPECT_GE(named(item, Verdict::reproduced).size(), 1u) << id;
   }
 }
 

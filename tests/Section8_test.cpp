@@ -1,5 +1,5 @@
 // The experiment that chapter 8 of the thesis proposes (nw/thesis/Section8.nw).
-#include "thesis/Section8.hpp"
+#include "malus/thesis/Section8.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 using namespace malus;
 
 TEST(Section8Invariant, TheExperimentHasItsVerdicts) {
-  const CDItem item = ran("C7", reproduceC7);
-  EXPECT_EQ(named(item, CDVerdict::differs), std::set<std::string>{"polarizer"});
+  const Item item = ran("C7", reproduceC7);
+  EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{"polarizer"});
   EXPECT_EQ(
-      named(item, CDVerdict::reproduced),
+      named(item, Verdict::reproduced),
       (std::set<std::string>{"exact", "reflectivities", "roughness", "errors", "normal"}));
   EXPECT_EQ(item.tables().size(), 3u);
   EXPECT_EQ(item.pictures().size(), 1u);

@@ -1,5 +1,5 @@
 // Skies in scenes, from the JSON text to the picture: a mirror reads the sky back, a turned world looks the same, the
-// record says what was known of the polarisation (nw/program/Scene.nw, nw/world/CDRayleighSky.nw, nw/world/CDSky.nw).
+// record says what was known of the polarisation (nw/program/SceneReader.nw, nw/world/RayleighSky.nw, nw/world/Sky.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "Program.hpp"
-#include "program/Render.hpp"
-#include "world/CDRayleighSky.hpp"
+#include "malus/air/RayleighSky.hpp"
+#include "malus/render/Renderer.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -43,7 +43,7 @@ const json rayleigh{{"model", "rayleigh"}, {"albedo", 0.2}};
 
 CDStokesVector pixel(const json& scene, std::size_t band,
                      const std::filesystem::path& at = ".") {
-  const CDFrame frame = renderScene(readSceneText(scene.dump(), "mirror.json", at));
+  const RenderedImage frame = renderScene(readSceneText(scene.dump(), "mirror.json", at));
   const double* s = frame.at(0, 0, band);
   return {s[0], s[1], s[2], s[3]};
 }
@@ -59,13 +59,13 @@ CDStokesVector mirrored(const CDStokesVector& s) {
 // The exact sky where the mirror looks, without table, scene or renderer.
 CDStokesVector exact(double view_deg, double azimuth_deg, double nm,
                      double sun_azimuth_deg = 120) {
-  const CDRayleighLight light(
-      CDRayleighAtmosphere(rayleighOpticalDepth(nm), rayleighDepolarization(nm)),
+  const RayleighLight light(
+      RayleighAtmosphere(rayleighOpticalDepth(nm), rayleighDepolarization(nm)),
       std::cos(50 * degree), 0.2, 1);
   // the mirrored direction has the opposite azimuth
   return light.down(
       std::cos(view_deg * degree),
-      CDRayleighLight::Azimuth::fromRadians((azimuth_deg + 180 - sun_azimuth_deg) * degree));
+      RayleighLight::Azimuth::fromRadians((azimuth_deg + 180 - sun_azimuth_deg) * degree));
 }
 }  // namespace
 
@@ -120,7 +120,7 @@ TEST(SkyScenesInvariant, ADomeWithAerosolIsASkyOfAScene) {
   const CDStokesVector seen = pixel(scene, 0, scratch.path);
   std::istringstream answer(
       malusIn(scratch.path, air + "--mu 0.766044443118978 --phi 240").out);
-  const CDTable one = CDTable::parse(answer, "answer");
+  const Table one = Table::parse(answer, "answer");
   const CDStokesVector light(one.number(0, "I"), one.number(0, "Q"), one.number(0, "U"),
                              one.number(0, "V"));
   EXPECT_GT(std::abs(light.getStokes(3)), 0);
@@ -134,7 +134,7 @@ TEST(SkyScenesInvariant, TheShippedSceneUnderThePolarisedSky) {
   const std::string scene =
       (std::filesystem::path(MALUS_SOURCE_DATA).parent_path() / "scenes/chunky-bar-sky.json")
           .string();
-  const CDFrame frame = renderScene(readScene(
+  const RenderedImage frame = renderScene(readScene(
       scene,
       R"({"sensor": {"width": 16, "height": 16, "focal_length_mm": 15, "pixel_pitch_um": 625}, "radiometry": {"rays": [46, 1]}})"));
   double linear[2]{}, circular[2]{};

@@ -1,5 +1,5 @@
 // Tables of the sky in other forms than a grid of Stokes vectors (nw/world/SkyTables.nw).
-#include "world/SkyTables.hpp"
+#include "malus/air/SkyTables.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,43 +9,43 @@
 #include <random>
 #include <sstream>
 
-#include "light/CDError.hpp"
-#include "world/CDRayleighSky.hpp"
+#include "malus/air/RayleighSky.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-const auto grid = CDSpectralGrid::make({500.0});
+const auto grid = SpectralGrid::make({500.0});
 const double sun_zenith_deg = 50, sun_azimuth_deg = 212;
 
-const CDRayleighSky& truth() {
-  static const CDRayleighSky sky(
+const RayleighSky& truth() {
+  static const RayleighSky sky(
       {compassDirection(sun_zenith_deg * degree, sun_azimuth_deg * degree),
        CDSpectralVector<CDStokesVector>(grid, 1.0)},
-      CDRayleighSky::clearAir(grid, 0.2));
+      RayleighSky::clearAir(grid, 0.2));
   return sky;
 }
-CDStokesVector ask(const CDSky& sky, const CDVector& direction) {
+CDStokesVector ask(const Sky& sky, const CDVector& direction) {
   CDSpectralVector<CDStokesVector> out(sky.grid());
   sky.radiance(direction, out);
   return std::as_const(out)[0];
 }
-std::unique_ptr<CDTableSky> skyOf(const std::string& text) {
+std::unique_ptr<TableSky> skyOf(const std::string& text) {
   std::istringstream stream(text);
-  return std::make_unique<CDTableSky>(CDTable::parse(stream, "sky.csv"), grid);
+  return std::make_unique<TableSky>(Table::parse(stream, "sky.csv"), grid);
 }
 std::string messageOf(const std::string& text) {
   try {
     skyOf(text);
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 // The Rayleigh sky measured in random directions, evenly over the hemisphere down to the horizon.
-std::string measured(int count, CDSkyConvention convention, double highest_deg = 90) {
-  const bool ours = convention == CDSkyConvention::malus;
+std::string measured(int count, SkyConvention convention, double highest_deg = 90) {
+  const bool ours = convention == SkyConvention::malus;
   std::string text =
       fmt::format("# convention: {}\n# directions: scattered\n# sun_azimuth_deg: {}\n",
                   nameOf(convention), sun_azimuth_deg);
@@ -58,15 +58,14 @@ std::string measured(int count, CDSkyConvention convention, double highest_deg =
     if (zenith > highest_deg) continue;
     const CDVector d =
         compassDirection(zenith * degree, (azimuth + (ours ? 0 : sun_azimuth_deg)) * degree);
-    const CDStokesVector light =
-        convertSky(ask(truth(), d), CDSkyConvention::malus, convention);
+    const CDStokesVector light = convertSky(ask(truth(), d), SkyConvention::malus, convention);
     text += fmt::format("{},{},500,{},{},{}\n", zenith, azimuth, light.getStokes(0),
                         light.getStokes(1), light.getStokes(2));
   }
   return text;
 }
 // root mean square of the error over the hemisphere, of S0; and of the 15 degrees around the zenith
-std::pair<double, double> errorsOf(const CDSky& sky) {
+std::pair<double, double> errorsOf(const Sky& sky) {
   double all = 0, top = 0;
   int count = 0, count_top = 0;
   for (double zenith = 2.5; zenith < 85; zenith += 5)
@@ -87,7 +86,7 @@ std::pair<double, double> errorsOf(const CDSky& sky) {
 // brightens within degrees, less. Four times as many measurements must halve the error at least.
 TEST(SkyTablesInvariant, ScatteredDirectionsBecomeASky) {
   for (const auto convention :
-       {CDSkyConvention::malus, CDSkyConvention::iprt, CDSkyConvention::natraj}) {
+       {SkyConvention::malus, SkyConvention::iprt, SkyConvention::natraj}) {
     const auto few = errorsOf(*skyOf(measured(300, convention))),
                many = errorsOf(*skyOf(measured(1200, convention)));
     EXPECT_LT(few.first, 0.06) << nameOf(convention);
@@ -95,7 +94,7 @@ TEST(SkyTablesInvariant, ScatteredDirectionsBecomeASky) {
     EXPECT_LT(many.second, 0.003);  // no worse around the zenith, where the axes turn
   }
   // control: the wrong convention
-  std::string wrong = measured(1200, CDSkyConvention::iprt);
+  std::string wrong = measured(1200, SkyConvention::iprt);
   wrong.replace(wrong.find("iprt"), 4, "natraj");
   EXPECT_GT(errorsOf(*skyOf(wrong)).first, 0.1);
 }
@@ -165,10 +164,9 @@ TEST(SkyTablesInvariant, DegreeAloneTakesTheAngleOfSingleScattering) {
 }
 
 TEST(SkyTablesInvariant, RefusesWithASentence) {
-  const std::string good = measured(300, CDSkyConvention::malus);
+  const std::string good = measured(300, SkyConvention::malus);
   EXPECT_EQ(messageOf(good), "");
-  EXPECT_NE(messageOf(measured(300, CDSkyConvention::malus, 60)).find("hole"),
-            std::string::npos);
+  EXPECT_NE(messageOf(measured(300, SkyConvention::malus, 60)).find("hole"), std::string::npos);
   std::string layout = good;
   layout.replace(layout.find("scattered"), 9, "anywhere");
   EXPECT_NE(messageOf(layout).find("scattered"), std::string::npos);

@@ -1,5 +1,5 @@
 // The sun's disk against answers that do not come from the radiometry: segments and lenses of circles, Fresnel's
-// reflectance, and sums over the disk (explained in nw/imaging/CDRadiometry.nw, section "The sun's disk").
+// reflectance, and sums over the disk (explained in nw/imaging/Radiometry.nw, section "The sun's disk").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "Worlds.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFGlossyCoating.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/Fresnel.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFGlossyCoating.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/Fresnel.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -26,11 +26,11 @@ Model matt(double reflectance) {
 Model facets(double n, double k, double sigma) {
   const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
   return std::make_shared<BRDFTorranceSparrow>(
-      all(n), all(k), all(sigma), CDTorranceSparrowOptions{.diffuse = CDDiffuseTerm::none});
+      all(n), all(k), all(sigma), TorranceSparrowOptions{.diffuse = DiffuseTerm::none});
 }
 
-CDRadiometryOptions rays(CDSampling sampling, std::vector<int> counts) {
-  CDRadiometryOptions options;
+RadiometryOptions rays(Sampling sampling, std::vector<int> counts) {
+  RadiometryOptions options;
   options.sampling = sampling, options.rays = std::move(counts);
   return options;
 }
@@ -39,19 +39,19 @@ std::vector<Quad> plate(const Model& model, double half = 50) {
   return {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model}};
 }
 
-CDWorld sunlit(CDWorld world, const CDVector& to_sun, double half_angle_rad = alpha,
-               const CDStokesVector& irradiance = 1.0) {
-  world.sun.emplace(CDSun{normalized(to_sun), spectrumOf(irradiance), half_angle_rad});
+World sunlit(World world, const CDVector& to_sun, double half_angle_rad = alpha,
+             const CDStokesVector& irradiance = 1.0) {
+  world.sun.emplace(Sun{normalized(to_sun), spectrumOf(irradiance), half_angle_rad});
   return world;
 }
 
 // White matt ground and something above it. The edge between the ground's triangles does not run through the origin:
-// rays start clear of edges (nw/imaging/CDRayTracer.nw), and so beside the point that is looked at.
-CDWorld groundUnder(const CDMesh& above) {
-  CDWorld world;
+// rays start clear of edges (nw/imaging/RayTracer.nw), and so beside the point that is looked at.
+World groundUnder(const Mesh& above) {
+  World world;
   world.grid = oneBand();
-  CDGeometryBuilder builder;
-  CDMesh ground;
+  GeometryBuilder builder;
+  Mesh ground;
   ground.vertices = {{-5, -5, 0}, {5, -5, 0}, {5, 8, 0}, {-5, 8, 0}};
   ground.facets = ground.materials = {"ground"};
   ground.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
@@ -63,16 +63,15 @@ CDWorld groundUnder(const CDMesh& above) {
   return world;
 }
 
-CDMesh above(std::vector<CDVector> vertices,
-             std::vector<std::array<std::uint32_t, 3>> corners) {
-  CDMesh mesh;
+Mesh above(std::vector<CDVector> vertices, std::vector<std::array<std::uint32_t, 3>> corners) {
+  Mesh mesh;
   mesh.facets = mesh.materials = {"above"};
   mesh.vertices = std::move(vertices);
   for (const auto& c : corners) mesh.triangles.push_back({c[0], c[1], c[2], 0, 0});
   return mesh;
 }
 
-CDMesh horizontalDisk(double radius, double height) {
+Mesh horizontalDisk(double radius, double height) {
   constexpr std::uint32_t sides = 720;
   std::vector<CDVector> vertices{{0, 0, height}};
   std::vector<std::array<std::uint32_t, 3>> corners;
@@ -84,7 +83,7 @@ CDMesh horizontalDisk(double radius, double height) {
   return above(std::move(vertices), std::move(corners));
 }
 
-CDMesh sphere(double radius, const CDVector& centre) {
+Mesh sphere(double radius, const CDVector& centre) {
   constexpr std::uint32_t rows = 90, columns = 360;
   std::vector<CDVector> vertices;
   std::vector<std::array<std::uint32_t, 3>> corners;
@@ -121,9 +120,9 @@ double lens(double r, double d) {
 struct Share {
   double mean, error;
 };
-Share lit(const CDWorld& world, const CDVector& at, std::uint64_t pixels = 20000) {
+Share lit(const World& world, const CDVector& at, std::uint64_t pixels = 20000) {
   const CDVector view = normalized(CDVector{1, 0.1, 0.5});
-  const Estimate e = estimate(world, rays(CDSampling::importance, {1}),
+  const Estimate e = estimate(world, rays(Sampling::importance, {1}),
                               looking(at, view, {0, 1, 0}, 0, 1), pixels);
   const double full = world.sun->to_sun.z / pi;
   return {e.mean[0] / full, e.error[0] / full};
@@ -149,7 +148,7 @@ struct Glint {
   double theta, off;
   CDVector toSun() const { return CDVector::fromAngles(theta, 0); }
   CDVector toViewer() const { return CDVector::fromAngles(theta + off, pi); }
-  CDRadiometry::Ray ray(std::uint64_t pixel = 0) const {
+  Radiometry::Ray ray(std::uint64_t pixel = 0) const {
     return looking({}, toViewer(), rayFrame(toViewer(), {0, 0, 1}).s, pixel);
   }
 };
@@ -167,7 +166,7 @@ double summed(const CDBRDFModel& brdf, const Glint& glint) {
                    turn = 2 * pi * (j + 0.5) / rings;
       const CDVector d =
           x * (across * std::cos(turn)) + y * (across * std::sin(turn)) + sun * (1 - 2 * t);
-      sum += brdf.getScore(CDBRDFGeometry::fromDirections(d, glint.toViewer()));
+      sum += brdf.getScore(BRDFGeometry::fromDirections(d, glint.toViewer()));
     }
   return sum * radiance * 4 * pi * half * half / (rings * rings);
 }
@@ -177,14 +176,14 @@ double summed(const CDBRDFModel& brdf, const Glint& glint) {
 // disk on one side of a line. First-order terms in the half angle cancel by symmetry, its square is 2e-5.
 TEST(SunDiskPublished, PenumbraOfAStraightEdge) {
   const double h = 10;
-  const CDWorld roof = groundUnder(
+  const World roof = groundUnder(
       above({{-5, -50, h}, {0, -50, h}, {0, 50, h}, {-5, 50, h}}, {{0, 1, 2}, {0, 2, 3}}));
   for (const double zenith : {0.0, 50 * degree}) {
-    const CDWorld world = sunlit(roof, CDVector::fromAngles(zenith, pi / 2));
+    const World world = sunlit(roof, CDVector::fromAngles(zenith, pi / 2));
     const double width = h * std::tan(alpha) / std::cos(zenith);
     for (const double u : {-1.2, -0.8, -0.3, 0.0, 0.5, 0.9, 1.2})
       expectShare(lit(world, {u * width, 0, 0}), segment(u), std::to_string(u));
-    const CDWorld wider = sunlit(roof, CDVector::fromAngles(zenith, pi / 2), 1.2 * alpha);
+    const World wider = sunlit(roof, CDVector::fromAngles(zenith, pi / 2), 1.2 * alpha);
     const Share control = lit(wider, {0.5 * width, 0, 0});
     EXPECT_GT(std::abs(control.mean - segment(0.5)), 5.5 * control.error + 1e-4)
         << "negative control";
@@ -195,7 +194,7 @@ TEST(SunDiskPublished, PenumbraOfAStraightEdge) {
 TEST(SunDiskPublished, PenumbraOfADisk) {
   const double h = 10, unit = h * std::tan(alpha);
   for (const double r : {0.6, 1.0, 1.7}) {
-    const CDWorld world = sunlit(groundUnder(horizontalDisk(r * unit, h)), {0, 0, 1});
+    const World world = sunlit(groundUnder(horizontalDisk(r * unit, h)), {0, 0, 1});
     for (const double d : {0.0, 0.3, 0.8, 1.5, 2.9})
       expectShare(lit(world, {d * unit, 0, 0}), 1 - lens(r, d),
                   std::to_string(r) + " " + std::to_string(d));
@@ -210,7 +209,7 @@ TEST(SunDiskPublished, EclipseByASphere) {
   const double distance = 20;
   for (const double r : {0.7, 1.06}) {
     const double radius = distance * std::sin(r * alpha);
-    const CDWorld world = sunlit(groundUnder(sphere(radius, {0, 0, distance})), {0, 0, 1});
+    const World world = sunlit(groundUnder(sphere(radius, {0, 0, distance})), {0, 0, 1});
     for (const double d : {0.0, 0.5, 1.2, 1.9})
       expectShare(lit(world, {distance * std::tan(d * alpha), 0, 0}), 1 - lens(r, d),
                   std::to_string(r) + " " + std::to_string(d));
@@ -221,17 +220,17 @@ TEST(SunDiskPublished, EclipseByASphere) {
 // ones would, sqrt(F (1 - F) / 256) = 0.031.
 TEST(SunDiskInvariant, SamplesOfAPixelAvoidEachOther) {
   const double h = 10, u = 0.2;
-  const CDWorld world =
+  const World world =
       sunlit(groundUnder(above({{-5, -50, h}, {0, -50, h}, {0, 50, h}, {-5, 50, h}},
                                {{0, 1, 2}, {0, 2, 3}})),
              {0, 0, 1});
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                rays(CDSampling::importance, {1}));
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                              rays(Sampling::importance, {1}));
   double squares = 0, independent = 0;
   for (std::uint64_t pixel = 0; pixel < 100; ++pixel) {
     double mean = 0, other = 0;
     for (std::uint32_t sample = 0; sample < 256; ++sample) {
-      CDRadiometry::Ray ray =
+      Radiometry::Ray ray =
           looking({u * h * std::tan(alpha), 0, 0}, {1, 0.1, 0.5}, {0, 1, 0}, pixel, 1);
       std::array<double, 4> out{};
       ray.sample = sample;
@@ -252,13 +251,13 @@ TEST(SunDiskInvariant, SamplesOfAPixelAvoidEachOther) {
 // surface: 2 sin(alpha) / (3 pi) of the irradiance, to the square of the half angle. A point has no light there.
 TEST(SunDiskInvariant, IrradianceIsTheSuns) {
   for (const double zenith_deg : {0.0, 40.0, 75.0, 89.0}) {
-    const CDWorld world =
+    const World world =
         sunlit(worldOf(plate(matt(1))), CDVector::fromAngles(zenith_deg * degree, 1));
     expectShare(lit(world, {}, 4000), 1, std::to_string(zenith_deg));
   }
-  const CDRadiometry::Ray ray = looking({}, {0.1, 0.2, 1}, {1, 0, 0});
-  const auto one = rays(CDSampling::grid, {1});
-  const CDWorld flat = worldOf(plate(matt(1)));
+  const Radiometry::Ray ray = looking({}, {0.1, 0.2, 1}, {1, 0, 0});
+  const auto one = rays(Sampling::grid, {1});
+  const World flat = worldOf(plate(matt(1)));
   const Estimate half = estimate(sunlit(flat, {1, 0, 0}), one, ray, 40000);
   const double expected = 2 * std::sin(alpha) / (3 * pi) / pi;
   EXPECT_NEAR(half.mean[0], expected, 5.5 * half.error[0]);
@@ -274,16 +273,16 @@ TEST(SunDiskInvariant, TheCameraSeesTheDisk) {
   const CDVector to_sun = CDVector::fromAngles(65 * degree, 2);
   const CDStokesVector light(1, 0.5, 0, 0.1);
   const auto picture = [&](double half_angle_rad) {
-    const CDWorld world = sunlit(worldOf(plate(matt(0))), to_sun, half_angle_rad, light);
-    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                  rays(CDSampling::importance, {2}));
+    const World world = sunlit(worldOf(plate(matt(0))), to_sun, half_angle_rad, light);
+    const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                                rays(Sampling::importance, {2}));
     const CDVector s = rayFrame(-to_sun, {0, 0, 1}).s, up = cross(to_sun, s);
     const double f = 80 / std::tan(alpha);
     std::array<double, 4> sum{}, out{};
     for (int y = -100; y < 100; ++y)
       for (int x = -100; x < 100; ++x) {
         const CDVector d = to_sun * f + s * (x + 0.5) + up * (y + 0.5);
-        const CDRadiometry::Ray ray{{0, 0, 1}, normalized(d), s};
+        const Radiometry::Ray ray{{0, 0, 1}, normalized(d), s};
         radiometry.radiance({&ray, 1}, out);
         const double cosine = dot(ray.direction, to_sun);
         for (std::size_t c = 0; c < 4; ++c) sum[c] += out[c] * std::pow(cosine, 4) / (f * f);
@@ -305,8 +304,8 @@ TEST(SunDiskPublished, SmoothSurfacesMirrorTheSun) {
       for (const double sigma : {1e-6, 1e-5, 1e-4}) {
         const Glint inside{theta_deg * degree, 0.7 * alpha},
             outside{theta_deg * degree, 1.3 * alpha};
-        const CDWorld world = sunlit(worldOf(plate(facets(n, k, sigma), 1)), inside.toSun());
-        const auto options = rays(CDSampling::importance, {65});
+        const World world = sunlit(worldOf(plate(facets(n, k, sigma), 1)), inside.toSun());
+        const auto options = rays(Sampling::importance, {65});
         const double radiance = 1 / (pi * std::sin(alpha) * std::sin(alpha));
         const Mirror mirror = mirrorOf(n, k, inside.theta + inside.off);
         const Estimate seen = estimate(world, options, inside.ray(), 50);
@@ -317,7 +316,7 @@ TEST(SunDiskPublished, SmoothSurfacesMirrorTheSun) {
         EXPECT_LT(estimate(world, options, outside.ray(), 50).mean[0], 1e-6 * radiance);
         // the last surface, whose only ray is the sun's
         const Estimate single =
-            estimate(world, rays(CDSampling::gridRotated, {1}), inside.ray(), 50);
+            estimate(world, rays(Sampling::gridRotated, {1}), inside.ray(), 50);
         EXPECT_NEAR(single.mean[0] / radiance, mirror.sum, 0.02 * mirror.sum)
             << n << " " << sigma;
       }
@@ -332,27 +331,27 @@ TEST(SunDiskInvariant, GlintsOfEveryRoughnessAreTheSumOverTheDisk) {
     for (const double off : {0.0, 0.6 * alpha, 1.5 * alpha}) {
       const Model glass = facets(1.5, 0, sigma);
       const Glint glint{60 * degree, off};
-      const CDWorld world = sunlit(worldOf(plate(glass, 1)), glint.toSun());
+      const World world = sunlit(worldOf(plate(glass, 1)), glint.toSun());
       const double expected = summed(*glass, glint);
       const double most = 1.03 * mirrorOf(1.5, 0, glint.theta + off / 2).sum * radiance;
       EXPECT_LT(expected, most);
-      const auto check = [&](const CDRadiometryOptions& options, std::uint64_t pixels,
+      const auto check = [&](const RadiometryOptions& options, std::uint64_t pixels,
                              double bound, const char* what) {
         const Estimate seen = estimate(world, options, glint.ray(), pixels);
         EXPECT_NEAR(seen.mean[0], expected, 5.5 * seen.error[0] + 1e-4 * expected)
             << what << " " << sigma << " " << off;
-        const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                      options);
+        const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                                    options);
         for (std::uint64_t pixel = 0; pixel < pixels; ++pixel) {
-          const CDRadiometry::Ray ray = glint.ray(pixel);
+          const Radiometry::Ray ray = glint.ray(pixel);
           std::array<double, 4> out{};
           radiometry.radiance({&ray, 1}, out);
           ASSERT_LT(out[0], bound * most) << what << " " << sigma << " " << off;
         }
       };
-      check(rays(CDSampling::importance, {65}), 1000, 1.5, "importance");
-      check(rays(CDSampling::importance, {1}), 20000, 1.12, "the sun's ray");
-      check(rays(CDSampling::gridRotated, {1}), 20000, 1.12, "the sun's ray on a grid");
+      check(rays(Sampling::importance, {65}), 1000, 1.5, "importance");
+      check(rays(Sampling::importance, {1}), 20000, 1.12, "the sun's ray");
+      check(rays(Sampling::gridRotated, {1}), 20000, 1.12, "the sun's ray on a grid");
     }
 }
 
@@ -361,12 +360,12 @@ TEST(SunDiskInvariant, NegativeControlsOfTheGlint) {
   const Model glass = facets(1.5, 0, 3e-3);
   const Glint glint{60 * degree, 0};
   const double expected = summed(*glass, glint);
-  const auto options = rays(CDSampling::importance, {65});
-  const CDWorld point = sunlit(worldOf(plate(glass, 1)), glint.toSun(), 0);
+  const auto options = rays(Sampling::importance, {65});
+  const World point = sunlit(worldOf(plate(glass, 1)), glint.toSun(), 0);
   EXPECT_GT(estimate(point, options, glint.ray(), 10).mean[0], 1.3 * expected);
   auto fault = options;
   fault.sun_sampled_twice = true;
-  const CDWorld disk = sunlit(worldOf(plate(glass, 1)), glint.toSun());
+  const World disk = sunlit(worldOf(plate(glass, 1)), glint.toSun());
   EXPECT_GT(estimate(disk, fault, glint.ray(), 500).mean[0], 1.8 * expected);
 }
 
@@ -376,17 +375,15 @@ TEST(SunDiskInvariant, MattPaintUnderASmoothGloss) {
   const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
   const auto paint = std::make_shared<BRDFGlossyCoating>(all(1.5), all(0.5), 1e-6);
   const Glint beside{50 * degree, 4 * degree};
-  const CDWorld world = sunlit(worldOf(plate(paint, 1)), beside.toSun());
+  const World world = sunlit(worldOf(plate(paint, 1)), beside.toSun());
   const double expected =
-      paint->getScore(CDBRDFGeometry::fromDirections(beside.toSun(), beside.toViewer()));
+      paint->getScore(BRDFGeometry::fromDirections(beside.toSun(), beside.toViewer()));
   EXPECT_GT(expected, 0.05) << "negative control: there is a matt part";
-  for (const auto& options :
-       {rays(CDSampling::importance, {1}), rays(CDSampling::gridRotated, {1}),
-        rays(CDSampling::importance, {33})}) {
-    const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                  options);
+  for (const auto& options : {rays(Sampling::importance, {1}), rays(Sampling::gridRotated, {1}),
+                              rays(Sampling::importance, {33})}) {
+    const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
     for (std::uint64_t pixel = 0; pixel < 1000; ++pixel) {
-      const CDRadiometry::Ray ray = beside.ray(pixel);
+      const Radiometry::Ray ray = beside.ray(pixel);
       std::array<double, 4> out{};
       radiometry.radiance({&ray, 1}, out);
       ASSERT_NEAR(out[0], expected,
@@ -397,14 +394,14 @@ TEST(SunDiskInvariant, MattPaintUnderASmoothGloss) {
 
 // The answer depends on the ray alone: alone, or among others in another order.
 TEST(SunDiskInvariant, CompanyChangesNoBit) {
-  const CDWorld world = sunlit(
+  const World world = sunlit(
       worldOf({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, facets(0.4, 2.9, 0.01)},
                {{-1, -1, 0}, {-1, 1, 0}, {-1, 1, 2}, {-1, -1, 2}, facets(0.4, 2.9, 0.2)}},
               uniformSky(0.1)),
       {0.5, 0.1, 0.8});
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry),
-                                rays(CDSampling::importance, {17, 3, 1}));
-  std::vector<CDRadiometry::Ray> all;
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry),
+                              rays(Sampling::importance, {17, 3, 1}));
+  std::vector<Radiometry::Ray> all;
   for (std::uint64_t pixel = 0; pixel < 20; ++pixel)
     all.push_back(looking({-0.3, 0.01 * static_cast<double>(pixel), 0}, {0.6, 0.1, 0.5},
                           {0, 1, 0}, pixel));

@@ -1,5 +1,5 @@
 // Fitting n, k, sigma and the diffuse term to samples (nw/matter/SurfaceFit.nw).
-#include "matter/SurfaceFit.hpp"
+#include "malus/surface/SurfaceFit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "light/CDError.hpp"
-#include "matter/BRDFSampling.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/DHRTorranceSparrow.hpp"
-#include "matter/Fresnel.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/DHRTorranceSparrow.hpp"
+#include "malus/surface/DirectionSampling.hpp"
+#include "malus/surface/Fresnel.hpp"
 
 using namespace malus;
 
@@ -20,35 +20,35 @@ constexpr double degree = std::numbers::pi / 180;
 
 /// What a laboratory sees of a surface: fs and fp about the mirror direction, and DHR. The truth is
 /// the class itself with its own diffuse term, not the fit's prediction.
-std::vector<CDFitSample> laboratory(const BRDFTorranceSparrow& truth, double relative) {
-  std::vector<CDFitSample> samples;
+std::vector<FitSample> laboratory(const BRDFTorranceSparrow& truth, double relative) {
+  std::vector<FitSample> samples;
   for (const double i : {15., 35., 55., 70.}) {
     for (double r = i - 30; r <= std::min(i + 30, 80.); r += 7.5) {
       if (r < 0) continue;
-      const CDMuellerMatrix f = truth.at(CDBRDFGeometry::fromDegrees(i, r, 180));
+      const CDMuellerMatrix f = truth.at(BRDFGeometry::fromDegrees(i, r, 180));
       for (const double sign : {1., -1.}) {
         const double value = (f.getScalar() + sign * f.getMueller(1, 0)) / 2;
-        samples.push_back({sign > 0 ? CDFitQuantity::seenS : CDFitQuantity::seenP, 0,
-                           i * degree, r * degree, std::numbers::pi, value, relative * value});
+        samples.push_back({sign > 0 ? FitQuantity::seenS : FitQuantity::seenP, 0, i * degree,
+                           r * degree, std::numbers::pi, value, relative * value});
       }
     }
   }
   const double dhr = truth.getDHR(15 * degree)[0];
-  samples.push_back({CDFitQuantity::dhr, 0, 15 * degree, 0, 0, dhr, relative * dhr});
+  samples.push_back({FitQuantity::dhr, 0, 15 * degree, 0, 0, dhr, relative * dhr});
   return samples;
 }
 
-double normal(CDRandom& random) {
+double normal(Random& random) {
   return std::sqrt(-2 * std::log(1 - random.uniform())) *
          std::cos(2 * std::numbers::pi * random.uniform());
 }
 
-std::vector<CDFitSample> polished(const std::vector<double>& angles_deg, double n, double k) {
-  std::vector<CDFitSample> samples;
+std::vector<FitSample> polished(const std::vector<double>& angles_deg, double n, double k) {
+  std::vector<FitSample> samples;
   for (const double angle : angles_deg) {
-    const CDReflectances R = fresnelReflectances(angle * degree, n, k);
-    samples.push_back({CDFitQuantity::reflectanceS, 0, angle * degree, 0, 0, R.Rs, 1e-3});
-    samples.push_back({CDFitQuantity::reflectanceP, 0, angle * degree, 0, 0, R.Rp, 1e-3});
+    const Reflectances R = fresnelReflectances(angle * degree, n, k);
+    samples.push_back({FitQuantity::reflectanceS, 0, angle * degree, 0, 0, R.Rs, 1e-3});
+    samples.push_back({FitQuantity::reflectanceP, 0, angle * degree, 0, 0, R.Rp, 1e-3});
   }
   return samples;
 }
@@ -59,7 +59,7 @@ TEST(SurfaceFitIdentity, SamplesWithoutNoiseGiveTheParametersBack) {
   const double surfaces[][3] = {
       {0.405, 2.950, 0.2}, {1.5, 0.3, 0.1}, {2.9, 3.1, 0.35}, {0.2, 5, 0.15}};
   for (const auto& [n, k, sigma] : surfaces) {
-    const CDSurfaceFit fit = fitSurface(laboratory(BRDFTorranceSparrow(n, k, sigma), 0.01));
+    const SurfaceFit fit = fitSurface(laboratory(BRDFTorranceSparrow(n, k, sigma), 0.01));
     EXPECT_NEAR(fit.values[0], n, 2e-3 * n);
     EXPECT_NEAR(fit.values[1], k, 2e-3 * k);
     EXPECT_NEAR(fit.values[2], sigma, 2e-4 * sigma);
@@ -73,10 +73,10 @@ TEST(SurfaceFitIdentity, SamplesWithoutNoiseGiveTheParametersBack) {
 // any angle of incidence. The facets come from the class without a diffuse term.
 TEST(SurfaceFitIdentity, TheDiffuseTermIsInTheCornerAlone) {
   constexpr double sigma = 0.3, theta_i = 40 * degree, theta_r = 25 * degree, phi = 2.5;
-  CDTorranceSparrowOptions options;
-  options.diffuse = CDDiffuseTerm::none;
+  TorranceSparrowOptions options;
+  options.diffuse = DiffuseTerm::none;
   const BRDFTorranceSparrow facets(1.5, 0.2, sigma, options);
-  const CDMuellerMatrix f = facets.at(CDBRDFGeometry::fromAngles(theta_i, theta_r, phi));
+  const CDMuellerMatrix f = facets.at(BRDFGeometry::fromAngles(theta_i, theta_r, phi));
   const DHRTorranceSparrow table;
   const auto remainder = [&](double zenith) {
     return table.getRemainder(zenith, sigma) / std::numbers::pi;
@@ -88,13 +88,13 @@ TEST(SurfaceFitIdentity, TheDiffuseTermIsInTheCornerAlone) {
     sphere += remainder(zenith) * std::cos(zenith) * std::sin(zenith) * std::numbers::pi *
               std::numbers::pi / nodes;
   }
-  std::vector<CDFitSample> samples;
+  std::vector<FitSample> samples;
   for (int element = 0; element < 16; ++element)
-    samples.push_back({CDFitQuantity::element, element, theta_i, theta_r, phi, 0, 1});
-  samples.push_back({CDFitQuantity::seenS, 0, theta_i, theta_r, phi, 0, 1});
-  samples.push_back({CDFitQuantity::seenP, 0, theta_i, theta_r, phi, 0, 1});
+    samples.push_back({FitQuantity::element, element, theta_i, theta_r, phi, 0, 1});
+  samples.push_back({FitQuantity::seenS, 0, theta_i, theta_r, phi, 0, 1});
+  samples.push_back({FitQuantity::seenP, 0, theta_i, theta_r, phi, 0, 1});
   for (const double at : {0.0, theta_i, 1.2})
-    samples.push_back({CDFitQuantity::dhr, 0, at, 0, 0, 0, 1});
+    samples.push_back({FitQuantity::dhr, 0, at, 0, 0, 0, 1});
   for (const double d : {0.0, 1.0, 2.5}) {
     const Eigen::VectorXd y = predictSurface(samples, {1.5, 0.2, sigma, d});
     const double own = d * remainder(theta_r);
@@ -112,14 +112,14 @@ TEST(SurfaceFitIdentity, TheDiffuseTermIsInTheCornerAlone) {
 }
 
 TEST(SurfaceFitIdentity, APolishedSampleGivesItsIndex) {
-  const CDSurfaceFit fit =
+  const SurfaceFit fit =
       fitSurface(polished({20, 45, 60, 75}, 0.405, 2.95), {{{}, {}, 0.1, 0.0}});
   EXPECT_NEAR(fit.values[0], 0.405, 1e-6);  // differences of 1e-8 only steer, they do not bias
   EXPECT_NEAR(fit.values[1], 2.95, 1e-6);
   EXPECT_EQ(fit.values[2], 0.1);  // fixed
   EXPECT_EQ(fit.errors[2], 0);
   EXPECT_GT(fit.errors[0], 0);
-  const CDSurfaceFit other =
+  const SurfaceFit other =
       fitSurface(polished({20, 45, 60, 75}, 0.41, 2.95), {{{}, {}, 0.1, 0.0}});
   EXPECT_GT(std::abs(other.values[0] - 0.405), 1e-3);  // negative control
 }
@@ -127,13 +127,13 @@ TEST(SurfaceFitIdentity, APolishedSampleGivesItsIndex) {
 // 60 runs: the ratio of scatter and stated error is known to 1/sqrt(120) = 9 %; four of these.
 TEST(SurfaceFitInvariant, ParametersScatterAsTheirErrorsSay) {
   const auto exact = laboratory(BRDFTorranceSparrow(0.405, 2.95, 0.2), 0.01);
-  CDRandom random(8);
+  Random random(8);
   std::array<double, 4> squares{}, halves{};
   constexpr int runs = 60;
   for (int run = 0; run < runs; ++run) {
     auto noisy = exact;
-    for (CDFitSample& s : noisy) s.value += s.error * normal(random);
-    const CDSurfaceFit fit = fitSurface(noisy);
+    for (FitSample& s : noisy) s.value += s.error * normal(random);
+    const SurfaceFit fit = fitSurface(noisy);
     const std::array<double, 4> truth{0.405, 2.95, 0.2, 1};
     for (std::size_t j = 0; j < 4; ++j) {
       const double pull = (fit.values[j] - truth[j]) / fit.errors[j];
@@ -149,13 +149,13 @@ TEST(SurfaceFitInvariant, ParametersScatterAsTheirErrorsSay) {
 }
 
 TEST(SurfaceFitInvariant, AWrongModelIsToldByChiSquared) {
-  CDTorranceSparrowOptions smith;
-  smith.shadowing = CDShadowing::none;
-  smith.diffuse = CDDiffuseTerm::none;
-  const CDSurfaceFit fit =
+  TorranceSparrowOptions smith;
+  smith.shadowing = Shadowing::none;
+  smith.diffuse = DiffuseTerm::none;
+  const SurfaceFit fit =
       fitSurface(laboratory(BRDFTorranceSparrow(1.5, 0.3, 0.35, smith), 0.001));
   EXPECT_GT(fit.chi2, 10.0 * static_cast<double>(fit.samples));
-  const auto told = [](const CDSurfaceFit& of) {
+  const auto told = [](const SurfaceFit& of) {
     return std::any_of(of.remarks.begin(), of.remarks.end(),
                        [](const std::string& r) { return r.starts_with("chi2 is "); });
   };
@@ -164,12 +164,12 @@ TEST(SurfaceFitInvariant, AWrongModelIsToldByChiSquared) {
 }
 
 TEST(SurfaceFitInvariant, WhatCannotBeToldIsRefused) {
-  const CDFixedParameters smooth{{{}, {}, 0.1, 0.0}};
+  const FixedParameters smooth{{{}, {}, 0.1, 0.0}};
   // Rs = Rp at normal incidence: one number for n and k
-  EXPECT_THROW(fitSurface(polished({0}, 0.405, 2.95), smooth), CDMathError);
+  EXPECT_THROW(fitSurface(polished({0}, 0.405, 2.95), smooth), MathError);
   EXPECT_NO_THROW(fitSurface(polished({0, 70}, 0.405, 2.95), smooth));  // negative control
-  EXPECT_THROW(fitSurface({}), CDMathError);
-  EXPECT_THROW(fitSurface(polished({30}, 1.5, 0.1), {{1.5, 0.1, 0.1, 1.0}}), CDMathError);
+  EXPECT_THROW(fitSurface({}), MathError);
+  EXPECT_THROW(fitSurface(polished({30}, 1.5, 0.1), {{1.5, 0.1, 0.1, 1.0}}), MathError);
   // a polished sample says nothing of sigma
-  EXPECT_THROW(fitSurface(polished({20, 45, 60}, 1.5, 1)), CDMathError);
+  EXPECT_THROW(fitSurface(polished({20, 45, 60}, 1.5, 1)), MathError);
 }

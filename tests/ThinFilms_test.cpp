@@ -1,5 +1,5 @@
 // Boundaries with films (nw/matter/ThinFilms.nw) against Fresnel, Airy's sum, and quarter waves.
-#include "matter/ThinFilms.hpp"
+#include "malus/surface/ThinFilms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,14 @@
 #include <limits>
 #include <numbers>
 
-#include "light/CDError.hpp"
+#include "malus/base/Error.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
 using Complex = std::complex<double>;
-double apart(const CDFresnelTerms<double>& a, const CDFresnelTerms<double>& b) {
+double apart(const FresnelTerms<double>& a, const FresnelTerms<double>& b) {
   return std::max({std::abs(a.sum - b.sum), std::abs(a.diff - b.diff), std::abs(a.re - b.re),
                    std::abs(a.im - b.im)});
 }
@@ -26,7 +26,7 @@ TEST(ThinFilmsIdentity, NoFilmIsFresnel) {
   for (const double degrees : {0.0, 20.0, 45.0, 56.3, 70.0, 89.0, 90.0})
     for (const auto& [n, k] : {std::pair{1.5, 0.0}, {0.405, 2.95}, {0.5, 0.0}, {1.33, 0.01}}) {
       const double s2 = sin2(degrees), c = std::cos(degrees * pi / 180);
-      const CDFilmTerms bare = filmStack(1, {}, n, k, 550, s2);
+      const FilmTerms bare = filmStack(1, {}, n, k, 550, s2);
       EXPECT_LT(apart(bare.reflection, fresnelReflection(c, s2, n * n - k * k, 2 * n * k)),
                 1e-12)
           << degrees << ' ' << n;
@@ -35,7 +35,7 @@ TEST(ThinFilmsIdentity, NoFilmIsFresnel) {
             << degrees << n;
       }
       // a film of the medium, or of the substrate, or none thick
-      const auto same = [&](CDFilm film) {
+      const auto same = [&](Film film) {
         return apart(filmStack(1, {film}, n, k, 550, s2).reflection, bare.reflection);
       };
       EXPECT_LT(same({1.7, 0.2, 0}), 1e-12);
@@ -82,8 +82,8 @@ TEST(ThinFilmsPublished, QuarterAndHalfWaves) {
 }
 
 TEST(ThinFilmsInvariant, LosslessStacksKeepEnergyFromBothSides) {
-  const std::vector<CDFilm> films{{1.38, 0, 100}, {2.3, 0, 57}, {1.7, 0, 300}};
-  const std::vector<CDFilm> reversed(films.rbegin(), films.rend());
+  const std::vector<Film> films{{1.38, 0, 100}, {2.3, 0, 57}, {1.7, 0, 300}};
+  const std::vector<Film> reversed(films.rbegin(), films.rend());
   for (const double degrees : {0.0, 30.0, 60.0, 85.0, 90.0})
     for (const double nm : {400.0, 700.0}) {
       const auto there = filmStack(1, films, 1.5, 0, nm, sin2(degrees)),
@@ -117,9 +117,9 @@ TEST(ThinFilmsIdentity, CutFilmsAndThickMetal) {
 
 TEST(ThinFilmsIdentity, ImpossibleStacksAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(filmStack(1, {{1.5, 0, -1}}, 1.5, 0, 550, 0), CDMathError);
-  EXPECT_THROW(filmStack(1, {{1.5, -0.1, 1}}, 1.5, 0, 550, 0), CDMathError);
-  EXPECT_THROW(filmStack(1, {}, nan, 0, 550, 0), CDMathError);
-  EXPECT_THROW(filmStack(1, {}, 1.5, 0, 0, 0), CDMathError);
-  EXPECT_THROW(filmStack(1, {}, 1.5, 0, 550, 1.1), CDMathError);
+  EXPECT_THROW(filmStack(1, {{1.5, 0, -1}}, 1.5, 0, 550, 0), MathError);
+  EXPECT_THROW(filmStack(1, {{1.5, -0.1, 1}}, 1.5, 0, 550, 0), MathError);
+  EXPECT_THROW(filmStack(1, {}, nan, 0, 550, 0), MathError);
+  EXPECT_THROW(filmStack(1, {}, 1.5, 0, 0, 0), MathError);
+  EXPECT_THROW(filmStack(1, {}, 1.5, 0, 550, 1.1), MathError);
 }

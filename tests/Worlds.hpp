@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "imaging/CDRadiometry.hpp"
-#include "world/CDGeometry.hpp"
-#include "world/CDWorld.hpp"
+#include "malus/render/Radiometry.hpp"
+#include "malus/scene/SceneGeometry.hpp"
+#include "malus/scene/World.hpp"
 
 namespace malus::testing {
-inline const CDSpectralGridPtr& oneBand() {
-  static const CDSpectralGridPtr grid = CDSpectralGrid::make({CDSpectralLocation(550.0)});
+inline const SpectralGridPtr& oneBand() {
+  static const SpectralGridPtr grid = SpectralGrid::make({CDSpectralLocation(550.0)});
   return grid;
 }
 
@@ -27,13 +27,12 @@ struct Quad {
   std::shared_ptr<const CDBRDFModel> brdf;
 };
 
-inline CDWorld worldOf(const std::vector<Quad>& quads,
-                       std::shared_ptr<const CDSky> sky = nullptr) {
-  CDWorld world;
+inline World worldOf(const std::vector<Quad>& quads, std::shared_ptr<const Sky> sky = nullptr) {
+  World world;
   world.grid = oneBand();
-  CDGeometryBuilder builder;
+  GeometryBuilder builder;
   for (std::size_t i = 0; i < quads.size(); ++i) {
-    CDMesh mesh;
+    Mesh mesh;
     mesh.vertices = {quads[i].a, quads[i].b, quads[i].c, quads[i].d};
     mesh.facets = mesh.materials = {std::to_string(i)};
     mesh.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
@@ -45,8 +44,8 @@ inline CDWorld worldOf(const std::vector<Quad>& quads,
   return world;
 }
 
-inline std::shared_ptr<const CDSky> uniformSky(double radiance) {
-  return std::make_shared<CDUniformSky>(spectrumOf(radiance));
+inline std::shared_ptr<const Sky> uniformSky(double radiance) {
+  return std::make_shared<UniformSky>(spectrumOf(radiance));
 }
 
 // The box [low, high]^3 with normals inwards: bottom, top, west, east, south, north.
@@ -62,9 +61,9 @@ inline std::vector<Quad> boxOf(const std::array<std::shared_ptr<const CDBRDFMode
 }
 
 // A ray that sees the point `at` from the direction `to_viewer`.
-inline CDRadiometry::Ray looking(const CDVector& at, const CDVector& to_viewer,
-                                 const CDVector& horizontal, std::uint64_t pixel = 0,
-                                 double distance = 5) {
+inline Radiometry::Ray looking(const CDVector& at, const CDVector& to_viewer,
+                               const CDVector& horizontal, std::uint64_t pixel = 0,
+                               double distance = 5) {
   const CDVector d = normalized(to_viewer);
   return {at + d * distance, -d, horizontal, pixel, 0, 0};
 }
@@ -74,9 +73,9 @@ struct Estimate {
   std::array<double, 4> mean{}, error{};
 };
 
-inline Estimate estimate(const CDWorld& world, const CDRadiometryOptions& options,
-                         CDRadiometry::Ray ray, std::uint64_t pixels) {
-  const CDRadiometry radiometry(world, std::make_shared<CDRayTracer>(world.geometry), options);
+inline Estimate estimate(const World& world, const RadiometryOptions& options,
+                         Radiometry::Ray ray, std::uint64_t pixels) {
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
   std::array<double, 4> sum{}, squares{}, out{};
   for (ray.pixel = 0; ray.pixel < pixels; ++ray.pixel) {
     radiometry.radiance({&ray, 1}, out);

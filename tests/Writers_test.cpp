@@ -1,4 +1,4 @@
-// A program among others, from outside (nw/light/CDProcess.nw, nw/program/CommandRender.nw, CommandLine.nw): two writers, closed
+// A program among others, from outside (nw/light/Process.nw, nw/program/CommandRender.nw, CommandLine.nw): two writers, closed
 // and full streams, lost and damaged files, limits, a setting sun, a moved program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "Program.hpp"
-#include "imaging/CDImage.hpp"
-#include "light/CDError.hpp"
-#include "light/CDProcess.hpp"
-#include "program/CommandLine.hpp"
+#include "malus/app/CommandLine.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/base/Process.hpp"
+#include "malus/files/Cube.hpp"
 
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -130,11 +130,11 @@ TEST(WritersIdentity, ALockHoldsItsRangeAndNoOther) {
   const Scratch scratch;
   const fs::path file = scratch / "x.lock";
   {
-    const malus::CDOutputLock some(file, 3, 5);
-    EXPECT_THROW(malus::CDOutputLock(file, 5, 9), malus::CDInputError);
-    EXPECT_THROW(malus::CDOutputLock::demandFree(file, 0, 3), malus::CDInputError);
-    EXPECT_NO_THROW(malus::CDOutputLock::demandFree(file, 6, 9));
-    const malus::CDOutputLock others(file, 6, 9);
+    const malus::OutputLock some(file, 3, 5);
+    EXPECT_THROW(malus::OutputLock(file, 5, 9), malus::InputError);
+    EXPECT_THROW(malus::OutputLock::demandFree(file, 0, 3), malus::InputError);
+    EXPECT_NO_THROW(malus::OutputLock::demandFree(file, 6, 9));
+    const malus::OutputLock others(file, 6, 9);
   }
   EXPECT_FALSE(fs::exists(file));
 }
@@ -428,7 +428,7 @@ TEST(WritersInvariant, ASceneThatRunsThroughSunsetRenders) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.err.find("twilight"), run.err.rfind("twilight")) << run.err;  // once
   const auto mean = [&](const char* name) {
-    const malus::CDCube cube = malus::readCube(place.scratch / "b" / name);
+    const malus::Cube cube = malus::readCube(place.scratch / "b" / name);
     double sum = 0;
     for (std::size_t i = 0; i < cube.data.size(); i += 4) sum += cube.data[i];
     return sum;
@@ -483,12 +483,11 @@ TEST(WritersIdentity, InternalErrorsSaySoAndHaveTheirOwnCode) {
         2, arguments, {{"try", "throws", "", [action](CLI::App&) { return action; }}});
     return std::pair(code, testing::internal::GetCapturedStderr());
   };
-  const auto broken = codeOf([]() -> int { throw malus::CDInvariantError("1 against 2"); });
+  const auto broken = codeOf([]() -> int { throw malus::InvariantError("1 against 2"); });
   EXPECT_EQ(broken.first, 70);
-  EXPECT_EQ(
-      broken.second,
-      "malus try: internal error (malus::CDInvariantError): 1 against 2; this is a defect "
-      "of malus, not of your input: please report it with the command and its files\n");
+  EXPECT_EQ(broken.second,
+            "malus try: internal error (malus::InvariantError): 1 against 2; this is a defect "
+            "of malus, not of your input: please report it with the command and its files\n");
   EXPECT_EQ(codeOf([]() -> int { throw std::out_of_range("x"); }).first, 70);
   EXPECT_EQ(codeOf([]() -> int { throw std::bad_alloc(); }).first, 2);
   const auto file =

@@ -6,7 +6,7 @@
 1. A chunk name belongs to one chapter: the woven book joins all chapters, and
    two chunks of one name would be printed as one.
 2. An include never climbs: light < matter < world < imaging < program < thesis.
-   The file thesis/malus.cpp is the roof, and may include every floor.
+   The file app/malus.cpp is the roof, and may include every floor.
 """
 import re
 import sys

@@ -5,7 +5,7 @@ the chapter that declares it. What stands directly in the program's namespace
 must be defined in the index by its author (`@ %def`), since only then do all
 uses link to it. Members, enumerators and operators carry names that many
 classes share; a link from each `size` to one of them would mislead. They are
-indexed here, by their full names: `CDTable::rows`.
+indexed here, by their full names: `Table::rows`.
 """
 import glob
 import json

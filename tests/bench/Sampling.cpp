@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "thesis/OwnSampling.hpp"
+#include "malus/thesis/XSampling.hpp"
 
 using namespace malus;
 
@@ -26,27 +26,27 @@ constexpr Peer one_band[] = {
 constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.167, 64},
                                   {"scalar, 100 bands", 0.167, 219}};
 
-std::vector<CDSamplingRun> measure(CDSamplingTask task) {
+std::vector<SamplingRun> measure(SamplingTask task) {
   task.side = side;
-  std::vector<CDSamplingRun> runs;
-  for (CDSamplingRun& run : measureSamplings(task))
+  std::vector<SamplingRun> runs;
+  for (SamplingRun& run : measureSamplings(task))
     if (run.sampler != "reference") runs.push_back(std::move(run));
   return runs;
 }
 
-void print(const std::vector<CDSamplingRun>& runs, const std::string& note) {
-  for (const CDSamplingRun& run : runs)
+void print(const std::vector<SamplingRun>& runs, const std::string& note) {
+  for (const SamplingRun& run : runs)
     fmt::print("{:28} {:4} {:8.4f} {:8.4f} {:8.4f} {:8.4f} {:9.3f} {:10.4f}\n",
                run.sampler + note, run.rays, run.errors[0], run.errors[1], run.errors[2],
                run.errors[3], scale * run.seconds, run.errors[0] * scale * run.seconds);
 }
 
 /// Seconds to an error of S0: between neighbours a line on logarithmic axes, from the fewest rays on.
-double secondsTo(double error, const std::vector<CDSamplingRun>& runs) {
+double secondsTo(double error, const std::vector<SamplingRun>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].errors[0] > error) continue;
     if (i == 0) return scale * runs[0].seconds;
-    const CDSamplingRun &before = runs[i - 1], &after = runs[i];
+    const SamplingRun &before = runs[i - 1], &after = runs[i];
     const double t =
         std::log(before.errors[0] / error) / std::log(before.errors[0] / after.errors[0]);
     return scale * before.seconds * std::pow(after.seconds / before.seconds, t);
@@ -55,7 +55,7 @@ double secondsTo(double error, const std::vector<CDSamplingRun>& runs) {
 }
 
 template <std::size_t N>
-void compare(const Peer (&peers)[N], const std::vector<CDSamplingRun>& runs) {
+void compare(const Peer (&peers)[N], const std::vector<SamplingRun>& runs) {
   for (const Peer& peer : peers) {
     const double ours = secondsTo(peer.error, runs);
     fmt::print(

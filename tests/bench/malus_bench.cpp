@@ -16,13 +16,13 @@
 
 #include "Bare.hpp"
 #include "Sampling.hpp"
-#include "light/CDSpectralVector.hpp"
-#include "light/CDTable.hpp"
-#include "matter/BRDFSampling.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/MuellerTables.hpp"
-#include "program/Models.hpp"
-#include "world/CDSun.hpp"
+#include "malus/air/Sun.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/light/CDSpectralVector.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
+#include "malus/surface/DirectionSampling.hpp"
+#include "malus/surface/ModelRegistry.hpp"
+#include "malus/surface/MuellerTable.hpp"
 
 using namespace malus;
 
@@ -34,7 +34,7 @@ constexpr std::size_t directions = 256;
 struct Rays {
   std::vector<CDVector> to_source, to_viewer;
   Rays() {
-    CDRandom random(2002);
+    Random random(2002);
     for (std::size_t i = 0; i < directions; ++i)
       for (auto* list : {&to_source, &to_viewer}) {
         const double zenith = 1.4 * random.uniform();
@@ -49,7 +49,7 @@ const Rays& rays() {
 
 /// A metal and light on so many bands, as spectra and as bare arrays.
 struct Bands {
-  CDSpectralGridPtr grid;
+  SpectralGridPtr grid;
   std::vector<double> n, k, e1, e2, s, out;
   CDSpectralVector<CDStokesVector> polarized, unpolarized, sum;
 
@@ -70,20 +70,20 @@ struct Bands {
     }
     sum.polarize();
   }
-  static CDSpectralGridPtr gridOf(std::size_t count) {
+  static SpectralGridPtr gridOf(std::size_t count) {
     std::vector<double> nm;
     for (std::size_t j = 0; j < count; ++j) nm.push_back(400 + static_cast<double>(j));
-    return CDSpectralGrid::make(nm);
+    return SpectralGrid::make(nm);
   }
-  BRDFTorranceSparrow model(CDTorranceSparrowOptions options) const {
+  BRDFTorranceSparrow model(TorranceSparrowOptions options) const {
     return {CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k),
             CDSpectralVector<double>(grid, sigma), options};
   }
 };
 
-const CDTorranceSparrowOptions full{CDShadowing::vGroove, CDDiffuseTerm::none, true};
-const CDTorranceSparrowOptions with_diffuse{CDShadowing::vGroove, CDDiffuseTerm::thesis, true};
-const CDTorranceSparrowOptions scalar{CDShadowing::vGroove, CDDiffuseTerm::none, false};
+const TorranceSparrowOptions full{Shadowing::vGroove, DiffuseTerm::none, true};
+const TorranceSparrowOptions with_diffuse{Shadowing::vGroove, DiffuseTerm::thesis, true};
+const TorranceSparrowOptions scalar{Shadowing::vGroove, DiffuseTerm::none, false};
 
 /// Runs body(i) for one pair of directions after another.
 template <class Body>
@@ -96,14 +96,14 @@ void loop(benchmark::State& state, Body body) {
   }
 }
 
-void productScatter(benchmark::State& state, CDTorranceSparrowOptions options, bool polarized) {
+void productScatter(benchmark::State& state, TorranceSparrowOptions options, bool polarized) {
   Bands bands(static_cast<std::size_t>(state.range(0)));
   const BRDFTorranceSparrow model = bands.model(options);
   const CDBRDFModel& brdf = model;  // through the abstract interface, as a renderer does
   const auto& in = polarized ? bands.polarized : bands.unpolarized;
   if (!options.polarized) bands.sum.demote();
   loop(state, [&](std::size_t i) {
-    const auto g = CDBRDFGeometry::fromDirections(rays().to_source[i], rays().to_viewer[i]);
+    const auto g = BRDFGeometry::fromDirections(rays().to_source[i], rays().to_viewer[i]);
     brdf.scatter(g, 0.01, in, bands.sum);
   });
 }
@@ -130,7 +130,7 @@ struct FloatBands {
 void productFloat(benchmark::State& state) {
   const std::size_t n = static_cast<std::size_t>(state.range(0));
   FloatBands b{Bands(n)};
-  const CDFacetLight<float> g{0.01f, 0, 0.8f, 0.36f, 0.6f, 0.8f, 0.8f, -0.6f};
+  const FacetLight<float> g{0.01f, 0, 0.8f, 0.36f, 0.6f, 0.8f, 0.8f, -0.6f};
   loop(state, [&](std::size_t) {
     scatterPolarized<float>(g, n, b.e1.data(), b.e2.data(), b.s.data(), b.out.data(), n);
   });
@@ -147,7 +147,7 @@ void bareFloat(benchmark::State& state) {
 // ---- Mueller times Stokes
 void productMueller(benchmark::State& state, bool by_operator) {
   Bands bands(static_cast<std::size_t>(state.range(0)));
-  const auto m = bands.model(full).getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 150));
+  const auto m = bands.model(full).getBRDF(BRDFGeometry::fromDegrees(30, 40, 150));
   loop(state, [&](std::size_t) {
     if (by_operator)
       bands.sum = m * bands.polarized;
@@ -157,7 +157,7 @@ void productMueller(benchmark::State& state, bool by_operator) {
 }
 void bareMueller(benchmark::State& state) {
   Bands bands(static_cast<std::size_t>(state.range(0)));
-  const auto m = bands.model(full).getBRDF(CDBRDFGeometry::fromDegrees(30, 40, 150));
+  const auto m = bands.model(full).getBRDF(BRDFGeometry::fromDegrees(30, 40, 150));
   loop(state, [&](std::size_t) {
     bare::multiplyAdd(bands.n.size(), m.plane(0), bands.s.data(), bands.out.data());
   });
@@ -174,7 +174,7 @@ struct Tables {
   Tables() {
     std::filesystem::create_directory(directory);
     writeWhole(lasers, "wavelength_nm,n,k,bias,sigma\n400,1.5,0,.02,.2\n700,1.5,0,.03,.2\n");
-    const auto grid = CDSpectralGrid::make({400, 470, 540, 610, 680});
+    const auto grid = SpectralGrid::make({400, 470, 540, 610, 680});
     const BRDFTorranceSparrow metal({grid, 0.4}, {grid, 2.9}, {grid, sigma});
     writeWhole(matrices, tensorFile(tabulate(metal, 24)));
   }
@@ -216,15 +216,15 @@ const std::vector<int> named_model_bands{1, 256};
 
 void scatterByName(benchmark::State& state, const NamedModel& named) {
   Bands bands(static_cast<std::size_t>(state.range(0)));
-  const CDModelEntry& entry = modelEntry(named.name, {});
-  CDArguments arguments;
+  const ModelEntry& entry = modelEntry(named.name, {});
+  Arguments arguments;
   for (const auto& [name, text] : named.parameters) arguments[name] = {text, {}};
   // made once: the benchmark is run several times, and a paint takes a tenth of a second a band
   static std::map<std::pair<std::string, std::size_t>, std::shared_ptr<const CDBRDFModel>> made;
   auto& brdf = made[{named.name, bands.grid->size()}];
   if (!brdf) brdf = entry.make(checkedSettings(entry, arguments, bands.grid));
   loop(state, [&](std::size_t i) {
-    const auto g = CDBRDFGeometry::fromDirections(rays().to_source[i], rays().to_viewer[i]);
+    const auto g = BRDFGeometry::fromDirections(rays().to_source[i], rays().to_viewer[i]);
     brdf->scatter(g, 0.01, bands.polarized, bands.sum);
   });
 }

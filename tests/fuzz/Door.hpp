@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "light/CDError.hpp"
-#include "light/InputFiles.hpp"
+#include "malus/base/Error.hpp"
+#include "malus/base/InputFiles.hpp"
 
 // A door is a function of bytes. For libFuzzer it has the one name that libFuzzer calls; the test that replays former findings
 // (tests/Fuzz_test.cpp) includes all doors, each under its own name.
@@ -21,12 +21,12 @@
 #endif
 
 namespace malus::fuzzing {
-/// Any exception but CDInputError escapes, and stops the fuzzer; so does a message of no or many lines, or of no UTF-8.
+/// Any exception but InputError escapes, and stops the fuzzer; so does a message of no or many lines, or of no UTF-8.
 template <class Open>
 int knock(const Open& open) {
   try {
     open();
-  } catch (const CDInputError& error) {
+  } catch (const InputError& error) {
     const std::string_view message = error.what();
     if (message.empty() || message.find('\n') != message.npos || message.size() > 6000 ||
         endOfUTF8(message) != message.npos) {

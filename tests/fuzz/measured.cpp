@@ -9,14 +9,14 @@
 
 #include "Choices.hpp"
 #include "Door.hpp"
-#include "imaging/CDImage.hpp"
-#include "light/CDTable.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "matter/MeasuredBRDF.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/files/Cube.hpp"
+#include "malus/surface/BRDFMeasured.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 namespace malus::fuzzing::measured {
 inline const BRDFTorranceSparrow& metal() {
-  static const CDSpectralGridPtr bands = CDSpectralGrid::make({450.0, 550.0, 650.0});
+  static const SpectralGridPtr bands = SpectralGrid::make({450.0, 550.0, 650.0});
   static const BRDFTorranceSparrow model(CDSpectralVector<double>(bands, 0.4),
                                          CDSpectralVector<double>(bands, 3.0),
                                          CDSpectralVector<double>(bands, 0.3));
@@ -99,16 +99,15 @@ inline std::string changed(std::string bytes, Choices& choices) {
 }
 
 /// What was taken must be a surface: its matrices are numbers.
-inline void use(CDMuellerTable table) {
-  const CDSpectralGridPtr bands =
-      CDSpectralGrid::make(std::vector<double>{table.wavelength_nm[0]});
+inline void use(MuellerTable table) {
+  const SpectralGridPtr bands = SpectralGrid::make(std::vector<double>{table.wavelength_nm[0]});
   examine(table);
   if (table.values.size() > 100'000) return;
   const BRDFMeasured surface(bands, std::move(table));
   for (const double theta : {0.0, 30.0, 89.0})
     for (const double phi : {0.0, 90.0, 180.0})
       if (!std::isfinite(
-              surface.getBRDF(CDBRDFGeometry::fromDegrees(theta, 40, phi)).at(0).getScalar()))
+              surface.getBRDF(BRDFGeometry::fromDegrees(theta, 40, phi)).at(0).getScalar()))
         std::abort();
   surface.getDHR(0.5);
 }

@@ -1,7 +1,6 @@
 // The door for scenes: any text as a scene file in scenes/.
-#include "program/Scene.hpp"
-
 #include "Door.hpp"
+#include "malus/files/SceneReader.hpp"
 
 using namespace malus;
 

@@ -8,8 +8,8 @@
 
 #include "Choices.hpp"
 #include "Door.hpp"
-#include "program/Render.hpp"
-#include "program/Scene.hpp"
+#include "malus/files/SceneReader.hpp"
+#include "malus/render/Renderer.hpp"
 
 namespace malus::fuzzing::scenes {
 using nlohmann::json;
@@ -214,9 +214,9 @@ inline void change(json& scene, Choices& choices) {
   }
 }
 
-inline void render(const CDScene& scene) {
+inline void render(const Scene& scene) {
   const std::size_t frame = scene.platform.frames() - 1;
-  const CDSensorGeometry& sensor = scene.sensor.geometry();
+  const SensorGeometry& sensor = scene.sensor.geometry();
   if (sensor.samples > 16 || scene.sensor.bands()->size() > 100 ||
       scene.world.grid->size() > 1000)
     return;  // sound, and slow
@@ -224,7 +224,8 @@ inline void render(const CDScene& scene) {
   for (const int more : scene.radiometry.rays) rays *= std::size_t(std::min(more, 1000));
   if (rays > 1000) return;
   const std::size_t x = sensor.width / 2, y = sensor.height / 2;
-  const CDFrame picture = renderScene(scene, frame, {1, CDTile{x, y, x + 1, y + 1}, nullptr});
+  const RenderedImage picture =
+      renderScene(scene, frame, {1, Tile{x, y, x + 1, y + 1}, nullptr});
   for (const double number : picture.stokes)
     if (!std::isfinite(number)) {
       std::fprintf(stderr, "a pixel that is no number\n");

@@ -1,29 +1,30 @@
 // The doors for tables: the first byte says what the rest is taken for.
+#include "malus/base/Table.hpp"
+
 #include <sstream>
 
 #include "Door.hpp"
-#include "light/CDTable.hpp"
-#include "world/CDMaterial.hpp"
-#include "world/CDSky.hpp"
+#include "malus/air/Sky.hpp"
+#include "malus/scene/Material.hpp"
 
 using namespace malus;
 
 namespace {
-const CDSpectralGridPtr& grid() {
-  static const CDSpectralGridPtr bands = CDSpectralGrid::make({450.0, 550.0, 650.0});
+const SpectralGridPtr& grid() {
+  static const SpectralGridPtr bands = SpectralGrid::make({450.0, 550.0, 650.0});
   return bands;
 }
 
 void asNumbers(const std::string& text) {
   std::istringstream stream(text);
-  const CDTable table = CDTable::parse(stream, "table.csv");
+  const Table table = Table::parse(stream, "table.csv");
   for (const std::string& column : table.columns())
     for (std::size_t row = 0; row < table.rows(); ++row) table.number(row, column);
 }
 
 void asSky(const std::string& text) {
   std::istringstream stream(text);
-  const CDTableSky sky(CDTable::parse(stream, "sky.csv"), grid());
+  const TableSky sky(Table::parse(stream, "sky.csv"), grid());
 }
 }  // namespace
 

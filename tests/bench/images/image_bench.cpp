@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "BareImage.hpp"
-#include "imaging/CDRadiometry.hpp"
-#include "matter/BRDFDiffuse.hpp"
-#include "matter/BRDFTorranceSparrow.hpp"
-#include "world/CDRayleighSky.hpp"
+#include "malus/air/RayleighSky.hpp"
+#include "malus/render/Radiometry.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
@@ -29,14 +29,14 @@ double processorSeconds() {
 }
 
 struct Pair {  // one scene, for both
-  CDWorld world;
-  std::shared_ptr<const CDRayTracer> tracer;
+  World world;
+  std::shared_ptr<const RayTracer> tracer;
   bare::Scene bare;
 };
 
 struct Shape {
   std::vector<CDVector> vertices;
-  std::vector<CDTriangle> triangles;
+  std::vector<Triangle> triangles;
   void quad(const CDVector& a, const CDVector& b, const CDVector& c, const CDVector& d,
             std::uint32_t material) {
     const auto n = static_cast<std::uint32_t>(vertices.size());
@@ -91,11 +91,11 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
     pair->bare.e1.push_back(float(n[j] * n[j] - k[j] * k[j])),
         pair->bare.e2.push_back(float(2 * n[j] * k[j]));
   }
-  const auto grid = pair->world.grid = CDSpectralGrid::make(nm);
-  CDMesh mesh;
+  const auto grid = pair->world.grid = SpectralGrid::make(nm);
+  Mesh mesh;
   mesh.vertices = shape.vertices, mesh.triangles = shape.triangles;
   mesh.facets = {"f"}, mesh.materials = {"c0", "c1", "c2", "c3", "soil"};
-  CDGeometryBuilder builder;
+  GeometryBuilder builder;
   builder.addMesh(mesh, {});
   pair->world.geometry = std::move(builder).build();
   const std::array<double, 4> sigma{0.1, 0.15, 0.2, 0.3};
@@ -109,19 +109,19 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
       model = std::make_shared<BRDFTorranceSparrow>(
           CDSpectralVector<double>(grid, n), CDSpectralVector<double>(grid, k),
           CDSpectralVector<double>(grid, rough),
-          CDTorranceSparrowOptions{CDShadowing::vGroove, CDDiffuseTerm::none, polarized});
+          TorranceSparrowOptions{Shadowing::vGroove, DiffuseTerm::none, polarized});
     pair->world.materials.push_back({name, model});
     pair->bare.materials.push_back({float(rough), soil ? 0.2f : 0});
   }
   const CDVector to_sun = CDVector::fromAngles(0.5236, -1.5708);
   pair->world.sun.emplace(
-      CDSun{to_sun, CDSpectralVector<CDStokesVector>(grid, CDStokesVector(1.0)), 0});
-  pair->world.sky = std::make_shared<CDUniformSky>(
+      Sun{to_sun, CDSpectralVector<CDStokesVector>(grid, CDStokesVector(1.0)), 0});
+  pair->world.sky = std::make_shared<UniformSky>(
       CDSpectralVector<CDStokesVector>(grid, CDStokesVector(0.05)));
-  pair->tracer = std::make_shared<CDRayTracer>(pair->world.geometry);
+  pair->tracer = std::make_shared<RayTracer>(pair->world.geometry);
   for (const CDVector& v : pair->world.geometry.vertices())
     pair->bare.vertices.push_back({float(v.x), float(v.y), float(v.z)});
-  for (const CDTriangle& t : pair->world.geometry.triangles())
+  for (const Triangle& t : pair->world.geometry.triangles())
     pair->bare.triangles.push_back({t.a, t.b, t.c, t.material});
   pair->bare.sky = 0.05f, pair->bare.sun = 1;
   pair->bare.to_sun = {float(to_sun.x), float(to_sun.y), float(to_sun.z)};
@@ -130,10 +130,10 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
 }
 
 /// Every step-th row, in strips of sixteen pixels as a tile of the renderer has them.
-double renderProduct(const CDRadiometry& radiometry, std::size_t step, std::size_t bands,
+double renderProduct(const Radiometry& radiometry, std::size_t step, std::size_t bands,
                      std::vector<double>& out) {
-  std::vector<CDRadiometry::Ray> rays(pixels);
-  std::vector<CDRadiometry::Truth> truth(pixels);
+  std::vector<Radiometry::Ray> rays(pixels);
+  std::vector<Radiometry::Truth> truth(pixels);
   double sum = 0;
   for (std::size_t y = 0; y < pixels; y += step) {
     for (std::size_t x = 0; x < pixels; ++x) {
@@ -158,12 +158,10 @@ class OneByOne : public CDBRDFModel {
   explicit OneByOne(std::shared_ptr<const CDBRDFModel> model)
       : CDBRDFModel(model->grid()), model_(std::move(model)) {}
   std::string_view name() const override { return model_->name(); }
-  void evaluate(const CDBRDFGeometry& g,
-                CDSpectralVector<CDMuellerMatrix>& out) const override {
+  void evaluate(const BRDFGeometry& g, CDSpectralVector<CDMuellerMatrix>& out) const override {
     model_->evaluate(g, out);
   }
-  void scatter(const CDBRDFGeometry& g, double weight,
-               const CDSpectralVector<CDStokesVector>& in,
+  void scatter(const BRDFGeometry& g, double weight, const CDSpectralVector<CDStokesVector>& in,
                CDSpectralVector<CDStokesVector>& sum) const override {
     model_->scatter(g, weight, in, sum);
   }
@@ -186,16 +184,16 @@ struct Case {
 void measure(const Case& c) {
   const auto pair = makePair(c.shape, c.bands, c.polarized);
   if (c.one_by_one)
-    for (CDMaterial& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
+    for (Material& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
   if (c.clear_sky) {
-    const CDSun sun{pair->world.sun->to_sun,
-                    CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0)), 0};
+    const Sun sun{pair->world.sun->to_sun,
+                  CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0)), 0};
     const auto sky =
-        std::make_shared<CDRayleighSky>(sun, CDRayleighSky::clearAir(pair->world.grid, 0.3));
+        std::make_shared<RayleighSky>(sun, RayleighSky::clearAir(pair->world.grid, 0.3));
     pair->world.sky = sky, pair->world.sun = sky->sunAtGround();
   }
-  const CDRadiometry radiometry(pair->world, pair->tracer,
-                                {.sampling = CDSampling::gridRotated, .rays = c.rays});
+  const Radiometry radiometry(pair->world, pair->tracer,
+                              {.sampling = Sampling::gridRotated, .rays = c.rays});
   std::vector<double> out(pixels * 4 * c.bands);
   std::vector<float> bare_out(pixels * (pixels / c.step) * 4 * c.bands);
   std::vector<double> product, bare;
@@ -223,11 +221,10 @@ void measure(const Case& c) {
 /// The sun as a disk beside the same sun as a point, which is all that the bare loops know.
 void measureDisk(const Case& c) {
   const auto pair = makePair(c.shape, c.bands, c.polarized);
-  CDWorld soft = pair->world;
+  World soft = pair->world;
   soft.sun->half_angle_rad = solar_half_angle_rad;
-  const CDRadiometryOptions options{.sampling = CDSampling::gridRotated, .rays = c.rays};
-  const CDRadiometry disk(soft, pair->tracer, options),
-      point(pair->world, pair->tracer, options);
+  const RadiometryOptions options{.sampling = Sampling::gridRotated, .rays = c.rays};
+  const Radiometry disk(soft, pair->tracer, options), point(pair->world, pair->tracer, options);
   std::vector<double> out(pixels * 4 * c.bands), times, others;
   double sum = 0, other = 0;
   for (int repeat = 0; repeat < 11; ++repeat) {

@@ -7,14 +7,14 @@
 #include <numbers>
 #include <vector>
 
-#include "world/CDLayeredLight.hpp"
-#include "world/CDRayleighSky.hpp"
+#include "malus/air/AddingDoubling.hpp"
+#include "malus/air/RayleighSky.hpp"
 
 using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-const CDRayleighLight::Azimuth across{0, 1};
+const RayleighLight::Azimuth across{0, 1};
 
 double off(const CDStokesVector& light) {
   return std::max({std::abs(light.getStokes(0) - 0.22239883),
@@ -22,20 +22,20 @@ double off(const CDStokesVector& light) {
                    std::abs(light.getStokes(2) - 0.11112462)});
 }
 
-CDRayleighSky skyOf(int bands) {
+RayleighSky skyOf(int bands) {
   std::vector<double> nm;
   for (int b = 0; b < bands; ++b) nm.push_back(400 + 600.0 * b / bands);
-  const auto grid = CDSpectralGrid::make(nm);
-  const CDSun sun{compassDirection(0.5, 2), CDSpectralVector<CDStokesVector>(grid, 1.0)};
-  return CDRayleighSky(sun, CDRayleighSky::clearAir(grid, 0.2));
+  const auto grid = SpectralGrid::make(nm);
+  const Sun sun{compassDirection(0.5, 2), CDSpectralVector<CDStokesVector>(grid, 1.0)};
+  return RayleighSky(sun, RayleighSky::clearAir(grid, 0.2));
 }
 }  // namespace
 
 static void rayleighAtmosphereAndSun(benchmark::State& state) {
   CDStokesVector light;
   for (auto _ : state) {
-    const CDRayleighAtmosphere air(0.5);
-    light = CDRayleighLight(air, 0.6, 0.25, pi).down(0.4, across);
+    const RayleighAtmosphere air(0.5);
+    light = RayleighLight(air, 0.6, 0.25, pi).down(0.4, across);
     benchmark::DoNotOptimize(light);
   }
   state.counters["off"] = off(light);
@@ -43,14 +43,14 @@ static void rayleighAtmosphereAndSun(benchmark::State& state) {
 BENCHMARK(rayleighAtmosphereAndSun)->Unit(benchmark::kMillisecond);
 
 static void rayleighAnotherSun(benchmark::State& state) {
-  const CDRayleighAtmosphere air(0.5);
+  const RayleighAtmosphere air(0.5);
   for (auto _ : state)
-    benchmark::DoNotOptimize(CDRayleighLight(air, 0.6, 0.25, pi).groundRadiance());
+    benchmark::DoNotOptimize(RayleighLight(air, 0.6, 0.25, pi).groundRadiance());
 }
 BENCHMARK(rayleighAnotherSun)->Unit(benchmark::kMicrosecond);
 
 static void rayleighExactDirection(benchmark::State& state) {
-  const CDRayleighLight light(CDRayleighAtmosphere(0.5), 0.6, 0.25, pi);
+  const RayleighLight light(RayleighAtmosphere(0.5), 0.6, 0.25, pi);
   double mu = 0.4;
   for (auto _ : state) {
     benchmark::DoNotOptimize(mu);
@@ -67,7 +67,7 @@ static void rayleighTabulate(benchmark::State& state) {
 BENCHMARK(rayleighTabulate)->Arg(1)->Arg(100)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 static void rayleighTableDirection(benchmark::State& state) {
-  const CDRayleighSky sky = skyOf(static_cast<int>(state.range(0)));
+  const RayleighSky sky = skyOf(static_cast<int>(state.range(0)));
   CDSpectralVector<CDStokesVector> out(sky.grid());
   CDVector direction = compassDirection(0.9, 4);
   for (auto _ : state) {
@@ -80,7 +80,7 @@ BENCHMARK(rayleighTableDirection)->Arg(1)->Arg(100)->Unit(benchmark::kNanosecond
 
 // As the renderer asks: 512 directions of a hemisphere at once, in single precision; the time is that of one of them.
 static void rayleighManyDirections(benchmark::State& state) {
-  const CDRayleighSky sky = skyOf(static_cast<int>(state.range(0)));
+  const RayleighSky sky = skyOf(static_cast<int>(state.range(0)));
   std::vector<float> x, y, z;
   for (int i = 0; i < 512; ++i) {
     const CDVector d = CDVector::fromAngles(std::acos((i + 0.5) / 512), 2.4 * i);
@@ -103,15 +103,15 @@ static void doublingRayleigh(benchmark::State& state) {
   const int streams = static_cast<int>(state.range(0));
   CDStokesVector light;
   for (auto _ : state) {
-    light = CDLayeredLight({{{rayleighScatterer(0), 0.5}}}, 0.6, 0.25, pi, {0.4}, {streams, -1})
+    light = AddingDoubling({{{rayleighScatterer(0), 0.5}}}, 0.6, 0.25, pi, {0.4}, {streams, -1})
                 .down(0, pi / 2);
     benchmark::DoNotOptimize(light);
   }
   state.counters["off"] = off(light);
-  const CDLayeredLight thin({{{rayleighScatterer(0), 0.01}}}, 0.6, 0.25, pi, {0.02},
+  const AddingDoubling thin({{{rayleighScatterer(0), 0.01}}}, 0.6, 0.25, pi, {0.02},
                             {streams, -1});
   const CDStokesVector exact =
-      CDRayleighLight(CDRayleighAtmosphere(0.01), 0.6, 0.25, pi).down(0.02, across);
+      RayleighLight(RayleighAtmosphere(0.01), 0.6, 0.25, pi).down(0.02, across);
   double flat = 0;
   for (int k = 0; k < 3; ++k)
     flat = std::max(flat, std::abs(thin.down(0, pi / 2).getStokes(k) - exact.getStokes(k)));
@@ -129,10 +129,10 @@ BENCHMARK(doublingRayleigh)
 // Air with an aerosol that has so many terms (Henyey and Greenstein): all harmonics, one line of sight.
 static void doublingAerosol(benchmark::State& state) {
   const double g = static_cast<double>(state.range(0)) / 100;
-  const CDScatterer aerosol = henyeyGreensteinScatterer(g);
+  const Scatterer aerosol = henyeyGreensteinScatterer(g);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        CDLayeredLight({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.1}}}, 0.6, 0.25, pi, {0.4})
+        AddingDoubling({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.1}}}, 0.6, 0.25, pi, {0.4})
             .down(0, pi / 2));
   state.counters["terms"] = static_cast<double>(aerosol.terms().size());
 }

@@ -1,0 +1,250 @@
+// Filters before pixels, the way back, noise (nw/imaging/Polarimeter.nw).
+#include "malus/render/Polarimeter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "malus/base/Error.hpp"
+
+using namespace malus;
+
+namespace {
+constexpr double pi = std::numbers::pi;
+constexpr double never = std::numeric_limits<double>::infinity();  // is a well full
+constexpr double rounding =
+    1e-13;  // a few operations on numbers near 1, condition number below 10
+constexpr std::size_t width = 5, height = 4, bands = 2;
+
+const std::vector<CDMuellerMatrix> four{linearPolarizer(0), linearPolarizer(pi / 4),
+                                        linearPolarizer(pi / 2), circularPolarizer(+1)};
+const std::array<CDMuellerMatrix, 4> polarsens{linearPolarizer(0), linearPolarizer(pi / 4),
+                                               linearPolarizer(3 * pi / 4),
+                                               linearPolarizer(pi / 2)};
+
+std::vector<double> varied() {
+  std::vector<double> s;
+  for (std::size_t i = 0; i < width * height * bands; ++i) {
+    const double t = double(i);
+    s.insert(s.end(),
+             {2 + std::sin(t), std::cos(t), 0.5 * std::sin(2 * t), 0.25 * std::cos(3 * t)});
+  }
+  return s;
+}
+std::vector<double> even(const std::array<double, 4>& stokes) {
+  std::vector<double> s;
+  for (std::size_t i = 0; i < width * height * bands; ++i)
+    s.insert(s.end(), stokes.begin(), stokes.end());
+  return s;
+}
+double farthest(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+using Measured = std::array<bool, 4>;
+std::vector<double> readAll(const Polarimeter& p, const std::vector<double>& stokes) {
+  return p.read(stokes, p.whole());
+}
+std::vector<double> recoverAll(const Polarimeter& p, const std::vector<double>& readings) {
+  return p.recover(readings, p.whole());
+}
+}  // namespace
+
+TEST(PolarimeterIdentity, TheReadingsWorkedByHand) {
+  const Polarimeter p(
+      camerasBehind({linearPolarizer(pi / 4), linearPolarizer(0), linearPolarizer(pi / 2)}), 1,
+      1, 1, 1, 1);
+  const std::vector<double> light{2, 1, 0.5, 0};
+  EXPECT_LT(farthest(readAll(p, light), {1.25, 1.5, 0.5}), rounding);
+  EXPECT_GT(farthest(readAll(p, light), {0.75, 1.5, 0.5}),
+            0.1);  // the polariser along -45 degrees
+}
+
+// Malus's own law: what a polariser passes of light that is polarised at an angle to it is cos^2.
+TEST(PolarimeterPublished, MalussLaw) {
+  for (int degrees = 0; degrees <= 180; degrees += 15) {
+    const double angle = degrees * pi / 180;
+    const Polarimeter p(camerasBehind({linearPolarizer(angle)}), 1, 1, 1, 1, 1);
+    const std::vector<double> horizontal{1, 1, 0, 0};
+    EXPECT_NEAR(readAll(p, horizontal)[0], std::cos(angle) * std::cos(angle), rounding);
+  }
+}
+
+TEST(PolarimeterIdentity, FourCamerasGiveBackTheImage) {
+  const Polarimeter p(camerasBehind(four), width, height, bands, 1, 1);
+  EXPECT_EQ(p.measured(), (Measured{true, true, true, true}));
+  EXPECT_LT(farthest(recoverAll(p, readAll(p, varied())), varied()), rounding);
+  std::vector<double> spoilt = readAll(p, varied());  // the negative control
+  spoilt[7] += 1e-6;
+  EXPECT_GT(farthest(recoverAll(p, spoilt), varied()), 1e-7);
+}
+
+TEST(PolarimeterIdentity, SixCamerasAreLeastSquares) {
+  std::vector<CDMuellerMatrix> six = four;
+  six.push_back(linearPolarizer(3 * pi / 4));
+  six.push_back(circularPolarizer(-1));
+  const Polarimeter p(camerasBehind(six), 1, 1, 1, 1, 1);
+  // Each pair of opposite filters sums to S0, so with readings d the normal equations give by hand
+  // S0 = sum d / 3, S1 = d0 - d2, S2 = d1 - d4, S3 = d3 - d5.
+  const std::vector<double> d{1.0, 0.7, 0.3, 0.9, 0.5, 0.2};
+  EXPECT_LT(farthest(recoverAll(p, d), {3.6 / 3, 0.7, 0.2, 0.7}), rounding);
+}
+
+TEST(PolarimeterIdentity, AMosaicGivesBackAnEvenImageButNotS3) {
+  const Polarimeter p(mosaicOf(polarsens), width, height, bands, 2, 2);
+  EXPECT_EQ(p.measured(), (Measured{true, true, true, false}));
+  EXPECT_EQ(readAll(p, varied()).size(),
+            width * height * bands);  // one reading a pixel and band
+  const std::vector<double> back = recoverAll(p, readAll(p, even({2, 0.5, -0.3, 0.7})));
+  EXPECT_LT(farthest(back, even({2, 0.5, -0.3, 0})), rounding);
+}
+
+TEST(PolarimeterIdentity, AMosaicSeesFalsePolarisationAtAnEdge) {
+  const Polarimeter p(mosaicOf(polarsens), 4, 2, 1, 2, 2);
+  std::vector<double> edge(4 * 2 * 4, 0);
+  for (std::size_t i = 0; i < 8; ++i)
+    edge[4 * i] = i % 4 < 2 ? 1 : 3;  // unpolarised, brighter on the right
+  const std::vector<double> back = recoverAll(p, readAll(p, edge));
+  EXPECT_NEAR(back[1], 0, rounding);
+  // pixel (1, 0): the window's left column reads 45 and 90 degrees of 1, its right 0 and 135 of 3
+  EXPECT_NEAR(back[4 + 1], 1.0, rounding);
+  EXPECT_NEAR(back[4 + 2], -1.0, rounding);
+}
+
+TEST(PolarimeterIdentity, ACalibrationIsAMatrixForEachPixel) {
+  FilterPattern pattern{width, height, 1, 1, {}};
+  for (std::size_t i = 0; i < width * height; ++i)
+    pattern.filters.push_back(linearPolarizer(0.1 * double(i)));
+  const Polarimeter p(pattern, width, height, bands, 2, 2);
+  const double last = 0.1 * double(width * height - 1);
+  const std::vector<double> read = readAll(p, even({2, 0.5, -0.3, 0.7}));
+  EXPECT_NEAR(read.back(), 1 + 0.25 * std::cos(2 * last) - 0.15 * std::sin(2 * last), rounding);
+  // rounding times the condition number, which p knows
+  EXPECT_LT(farthest(recoverAll(p, read), even({2, 0.5, -0.3, 0})), 1e-14 * p.condition());
+  EXPECT_GT(p.condition(), 10);  // or the limit above would be that of any polarimeter
+}
+
+// The best four analysers look at the corners of a tetrahedron (Sabatke et al. 2000): condition number sqrt(3).
+TEST(PolarimeterPublished, ATetrahedronOfAnalysersHasTheConditionRootThree) {
+  const auto analyser = [](double a, double b, double c) {
+    const std::array<double, 16> row{0.5, 0.5 * a, 0.5 * b, 0.5 * c};
+    return CDMuellerMatrix(row);
+  };
+  const double r = 1 / std::sqrt(3.0);
+  const Polarimeter p(camerasBehind({analyser(r, r, r), analyser(r, -r, -r),
+                                     analyser(-r, r, -r), analyser(-r, -r, r)}),
+                      1, 1, 1, 1, 1);
+  EXPECT_NEAR(p.condition(), std::sqrt(3.0), rounding);
+  const Polarimeter other(camerasBehind(four), 1, 1, 1, 1, 1);
+  EXPECT_GT(other.condition(), 1.8);
+}
+
+TEST(PolarimeterInvariant, PartsAreTheVeryNumbersOfTheWhole) {
+  const std::vector<double> light = varied();
+  const auto cut = [&](const Tile& t) {
+    std::vector<double> some;
+    for (std::size_t y = t.y0; y < t.y1; ++y)
+      some.insert(some.end(), light.begin() + std::ptrdiff_t((y * width + t.x0) * bands * 4),
+                  light.begin() + std::ptrdiff_t((y * width + t.x1) * bands * 4));
+    return some;
+  };
+  const Instrument instrument{
+      Polarimeter(mosaicOf(polarsens), width, height, bands, 2, 2), {"I"}, {40, 2, 70, 9}};
+  const Measurement whole = measure(instrument, light, {0, 0, width, height}, 3);
+  std::size_t full = 0, bits = 0;
+  for (const Tile& t : {Tile{0, 0, 3, 3}, Tile{3, 0, 5, 3}, Tile{0, 3, 5, 4}}) {
+    const Measurement part = measure(instrument, cut(instrument.polarimeter.around(t)), t, 3);
+    full += part.full_wells;
+    std::size_t i = 0;
+    for (std::size_t y = t.y0; y < t.y1; ++y)
+      for (std::size_t x = t.x0; x < t.x1; ++x, ++i)
+        for (std::size_t b = 0; b < bands; ++b) {
+          const std::size_t at = (y * width + x) * bands + b;
+          ASSERT_EQ(part.readings[i * bands + b], whole.readings[at]);
+          for (std::size_t c = 0; c < 4; ++c, ++bits)
+            ASSERT_EQ(part.stokes[(i * bands + b) * 4 + c], whole.stokes[at * 4 + c]);
+        }
+  }
+  EXPECT_EQ(bits, light.size());
+  EXPECT_EQ(full, whole.full_wells);
+  EXPECT_GT(full, 0u);
+  EXPECT_NE(measure(instrument, light, {0, 0, width, height}, 4).readings, whole.readings);
+}
+
+TEST(PolarimeterIdentity, EveryBandMayHaveItsOwnFilter) {
+  FilterPattern pattern = camerasBehind({linearPolarizer(0), linearPolarizer(pi / 2)});
+  pattern.channels = 1, pattern.bands = 2;
+  const Polarimeter p(pattern, 1, 1, 2, 1, 1);
+  EXPECT_LT(farthest(readAll(p, std::vector<double>{1, 1, 0, 0, 1, 1, 0, 0}), {1, 0}),
+            rounding);
+}
+
+TEST(PolarimeterIdentity, WhatDoesNotFitIsRefused) {
+  FilterPattern pattern = camerasBehind(four);
+  EXPECT_THROW(Polarimeter(pattern, 0, 0, 1, 1, 1), MathError);
+  EXPECT_THROW(Polarimeter(pattern, 4, 4, 1, 5, 1), MathError);
+  pattern.bands = 3;
+  EXPECT_THROW(Polarimeter(pattern, 4, 4, 1, 1, 1), MathError);
+  EXPECT_THROW(Polarimeter(camerasBehind({}), 4, 4, 1, 1, 1), MathError);
+  EXPECT_THROW(Polarimeter(camerasBehind({CDMuellerMatrix(std::nan(""))}), 4, 4, 1, 1, 1),
+               MathError);
+  const Polarimeter p(camerasBehind(four), 4, 4, 1, 1, 1);
+  EXPECT_THROW(readAll(p, std::vector<double>(7)), MathError);
+  EXPECT_THROW(recoverAll(p, std::vector<double>(7)), MathError);
+}
+
+TEST(PolarimeterInvariant, NoiseHasItsMeanAndVariance) {
+  constexpr std::size_t n = 20000;
+  struct Case {
+    double reading, gain, sigma;
+  };
+  for (const Case& c : {Case{0.5, 6, 0}, Case{0.5, 400, 5}, Case{0.5, 1e8, 0}}) {
+    std::vector<double> readings(n, c.reading);
+    addNoise(readings, {c.gain, c.sigma, never, 3});
+    double sum = 0, squares = 0;
+    for (const double r : readings) sum += r, squares += (r - c.reading) * (r - c.reading);
+    const double mean = c.reading * c.gain,
+                 variance = (mean + c.sigma * c.sigma) / (c.gain * c.gain);
+    // five standard errors: 1 in 3e5 for each of six comparisons; the kurtosis of Poisson adds 1/mean
+    EXPECT_NEAR(sum / n, c.reading, 5 * std::sqrt(variance / n));
+    EXPECT_NEAR(squares / n, variance, 5 * variance * std::sqrt((2 + 1 / mean) / n));
+    EXPECT_GT(std::abs(squares / n - 1.2 * variance),
+              5 * variance * std::sqrt((2 + 1 / mean) / n));
+  }
+}
+
+TEST(PolarimeterInvariant, NoiseDependsOnSeedAndFrameAlone) {
+  const auto noisy = [](std::uint64_t seed, std::uint64_t frame) {
+    std::vector<double> readings(100, 1.0);
+    addNoise(readings, {50, 2, never, seed}, frame);
+    return readings;
+  };
+  EXPECT_EQ(noisy(1, 0), noisy(1, 0));
+  EXPECT_NE(noisy(1, 0), noisy(2, 0));
+  EXPECT_NE(noisy(1, 0), noisy(1, 1));
+}
+
+TEST(PolarimeterIdentity, NoiseThatCannotBeIsRefused) {
+  std::vector<double> readings{1.0, -1e-9};
+  addNoise(readings, {});
+  EXPECT_EQ(readings[0], 1.0);  // none asked for, none added
+  EXPECT_THROW(addNoise(readings, {0, 1, never, 1}), MathError);
+  EXPECT_THROW(addNoise(readings, {-1, 0, never, 1}), MathError);
+  addNoise(readings, {100, 0, never, 1});
+  EXPECT_NEAR(readings[1], -1e-9, 1e-24);  // no photons: as it was
+  EXPECT_THROW(addNoise(readings, {0, 0, 5, 1}), MathError);
+  EXPECT_THROW(addNoise(readings, {10, 0, 0, 1}), MathError);
+  readings[0] = std::nan("");
+  EXPECT_THROW(addNoise(readings, {100, 0, never, 1}), MathError);
+}
+
+TEST(PolarimeterIdentity, AFullWellHoldsNoMore) {
+  std::vector<double> readings{1, 100, 3};
+  EXPECT_EQ(addNoise(readings, {10, 0, 200, 1}), 1u);
+  EXPECT_EQ(readings[1], 20.0);
+  EXPECT_LT(readings[2], 20.0);
+}

@@ -1,0 +1,125 @@
+// The parts of a world, and what must hold between them (nw/world/World.nw).
+#include "malus/scene/World.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "malus/base/Error.hpp"
+#include "malus/render/Radiometry.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+
+using namespace malus;
+using std::numbers::pi;
+
+namespace {
+constexpr double rounding = 1e-14;  // a dozen operations on numbers below one
+
+// the listing of the chapter
+World smallWorld() {
+  World world;
+  world.grid = SpectralGrid::make({550.0});
+  GeometryBuilder builder;
+  builder.addGround(0, "soil", "ground");
+  world.geometry = std::move(builder).build();
+  const CDSpectralVector<double> reflectance(world.grid, 0.5);
+  world.materials = {{"soil", std::make_shared<BRDFDiffuse>(reflectance)}};
+  world.sun = Sun{compassDirection(pi / 3, pi), {world.grid, CDStokesVector(2.0)}, 0};
+  world.sky = blackSky(world.grid);
+  return world;
+}
+
+double seenFrom(const World& world, const CDVector& eye) {
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), {});
+  const Radiometry::Ray ray{eye, normalized(-eye), {0, 1, 0}, 0, 0, 0};
+  std::array<double, 4> out{};
+  radiometry.radiance({&ray, 1}, out);
+  return out[0];
+}
+
+// What check() says about a small world with one part spoiled; "" if nothing.
+std::string complaint(const std::function<void(World&)>& spoil) {
+  World world = smallWorld();
+  world.check();
+  spoil(world);
+  try {
+    world.check();
+  } catch (const MathError& error) {
+    return error.what();  // a GridError is one, too
+  }
+  return "";
+}
+bool names(const std::string& sentence, const std::string& part) {
+  return sentence.find(part) != std::string::npos;
+}
+SpectralGridPtr otherGrid() { return SpectralGrid::make({650.0}); }
+}  // namespace
+
+TEST(WorldIdentity, TheSmallWorldLooksAsTheChapterSays) {
+  World world = smallWorld();
+  for (const CDVector& eye :
+       {CDVector{0, 0, 1}, CDVector{300, 0, 1000}, CDVector{-0.2, 0.7, 0.1}})
+    EXPECT_NEAR(seenFrom(world, eye), 1 / (2 * pi), rounding);
+  world.sun->to_sun = compassDirection(pi / 3 + 1e-6, pi);  // the control: a sun a little lower
+  EXPECT_GT(std::abs(seenFrom(world, {0, 0, 1}) - 1 / (2 * pi)), rounding);
+}
+
+TEST(WorldIdentity, PartsThatAreMissingAreNamed) {
+  EXPECT_EQ(complaint([](World&) {}), "");  // the control
+  EXPECT_EQ(complaint([](World& world) { world.sun.reset(); }), "");
+  EXPECT_TRUE(names(complaint([](World& world) { world.grid = nullptr; }), "spectral grid"));
+  EXPECT_TRUE(names(complaint([](World& world) { world.sky = nullptr; }), "a black one"));
+  EXPECT_TRUE(names(complaint([](World& world) { world.materials.clear(); }),
+                    "names 1 materials, the world has 0"));
+  EXPECT_TRUE(
+      names(complaint([](World& world) { world.materials.push_back(world.materials[0]); }),
+            "names 1 materials, the world has 2"));
+  EXPECT_TRUE(names(complaint([](World& world) { world.materials[0].brdf = nullptr; }),
+                    "no BRDF for the material soil"));
+}
+
+TEST(WorldIdentity, PartsOnAnotherGridAreRefused) {
+  const std::string grids = "different grids";
+  EXPECT_TRUE(names(complaint([](World& world) { world.grid = otherGrid(); }), grids));
+  EXPECT_TRUE(names(complaint([](World& world) { world.sky = blackSky(otherGrid()); }), grids));
+  EXPECT_TRUE(names(complaint([](World& world) {
+                      world.sun->irradiance = {otherGrid(), CDStokesVector(2.0)};
+                    }),
+                    grids));
+  EXPECT_TRUE(names(complaint([](World& world) {
+                      world.materials[0].brdf = std::make_shared<BRDFDiffuse>(
+                          CDSpectralVector<double>(otherGrid(), 0.5));
+                    }),
+                    grids));
+}
+
+TEST(WorldIdentity, ASunThatIsNotPhysicalIsRefused) {
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  const auto towards = [](const CDVector& to_sun) {
+    return complaint([&](World& world) { world.sun->to_sun = to_sun; });
+  };
+  EXPECT_EQ(towards({0.6, 0, 0.8}), "");  // the control
+  for (const CDVector& bad :
+       {CDVector{0, 0, 0}, CDVector{0.6, 0, 0.81}, CDVector{0, 0, not_a_number}})
+    EXPECT_TRUE(names(towards(bad), "not a unit vector"));
+  const auto wide = [](double half_angle_rad) {
+    return complaint([&](World& world) { world.sun->half_angle_rad = half_angle_rad; });
+  };
+  EXPECT_EQ(wide(0), "");  // a point
+  for (const double bad : {-0.001, pi / 2, not_a_number})
+    EXPECT_TRUE(names(wide(bad), "half angle"));
+  const auto bright = [](const CDStokesVector& light) {
+    return complaint([&](World& world) { world.sun->irradiance[0] = light; });
+  };
+  EXPECT_EQ(bright(CDStokesVector(2, 0, 0, -2)), "");  // behind a polariser
+  for (const CDStokesVector& bad :
+       {CDStokesVector(-1), CDStokesVector(not_a_number), CDStokesVector(2, 1.5, 1.5, 0)})
+    EXPECT_TRUE(names(bright(bad), "at 550 nm is not physical"));
+}

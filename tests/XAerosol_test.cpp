@@ -1,0 +1,35 @@
+// The item of the sky with dust (nw/thesis/XAerosol.nw).
+#include "malus/thesis/XAerosol.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "Items.hpp"
+
+using namespace malus;
+
+TEST(OwnAerosolInvariant, EveryClaimHolds) {
+  const Item item = ran("X.aerosol", reproduceXAerosol);
+  EXPECT_EQ(named(item, Verdict::reproduced),
+            (std::set<std::string>{"arago", "babinet", "circular", "converged", "curves",
+                                   "downwards", "lists", "maximum", "reflected"}));
+  EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{});
+  EXPECT_EQ(item.tables().size(), 2u);
+  // negative control: the thick haze is not as polarised as clear air
+  EXPECT_LT(std::stod(valuesOf(item).at("thick")), std::stod(valuesOf(item).at("clear")) - 20);
+}
+
+// A digit of the printed table that is wrong is seen, by the claim whose digit it is.
+TEST(OwnAerosolPublished, NegativeControlAChangedDigitOfTheSeriesIsSeen) {
+  const Corrupted table("evans1991-series.csv", "1.45529318", "1.45529328");
+  EXPECT_EQ(named(ran("X.aerosol", reproduceXAerosol, table.data), Verdict::differs),
+            std::set<std::string>{"lists"});
+}
+
+TEST(OwnAerosolPublished, NegativeControlAChangedSignOfVIsSeen) {
+  const Corrupted table("evans1991-light.csv", "0.611213e-4", "-0.611213e-4");
+  EXPECT_EQ(named(ran("X.aerosol", reproduceXAerosol, table.data), Verdict::differs),
+            std::set<std::string>{"reflected"});
+}

@@ -1,0 +1,65 @@
+// The item that weighs samplings against each other (nw/thesis/XSampling.nw).
+#include "malus/thesis/XSampling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "Items.hpp"
+
+using namespace malus;
+
+namespace {
+const Item& measured() {
+  static const Item item = ran("X.sampling", reproduceXSampling);
+  return item;
+}
+}  // namespace
+
+TEST(OwnSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
+  const std::map<std::string, Verdict> expected{{"random", Verdict::reproduced},
+                                                {"sobol", Verdict::reproduced},
+                                                {"rotated", Verdict::reproduced},
+                                                {"mixture", Verdict::reproduced}};
+  EXPECT_EQ(verdictsOf(measured()), expected);
+  EXPECT_EQ(measured().pictures().size(), 3u);
+}
+
+// The order of the samplings at 64 rays, in every component, is what the chapter's prose rests on.
+TEST(OwnSamplingRegression, OrderOfTheSamplings) {
+  auto values = valuesOf(measured());
+  for (const std::string s : {"S0", "S1", "S2", "S3"}) {
+    const auto error = [&](const std::string& sampler) {
+      return std::stod(values[sampler + "." + s]);
+    };
+    EXPECT_LT(error("sobol"), error("importance")) << s;
+    EXPECT_LT(error("importance"), error("gridRotated")) << s;
+    EXPECT_LT(error("gridRotated"), error("random")) << s;
+    EXPECT_GT(error("sobol"), 0) << "negative control: a picture compared with itself";
+  }
+}
+
+// The same seed makes the same picture, so errors are equal to the last bit; time is not asked.
+TEST(OwnSamplingInvariant, MeasurementIsRepeatable) {
+  const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
+  const auto again =
+      measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32, .only = "sobol"});
+  ASSERT_EQ(once.size(), 6u);
+  ASSERT_EQ(again.size(), 2u);
+  EXPECT_EQ(once[4].sampler, "sobol");
+  EXPECT_EQ(once[4].errors, again[0].errors);
+  EXPECT_EQ(once[5].errors[0], 0) << "the reference against itself";
+  EXPECT_NE(once[0].errors, again[0].errors) << "negative control: random directions";
+}
+
+TEST(OwnSamplingInvariant, AHundredBandsHaveTheSameFirstOne) {
+  const SamplingTask one{.side = 8, .rays = {16}, .reference_rays = 16, .only = "sobol"};
+  SamplingTask hundred = one;
+  hundred.bands = 100;
+  const auto a = measureSamplings(one), b = measureSamplings(hundred);
+  for (std::size_t i = 0; i < a[0].s0.size(); ++i)
+    EXPECT_NEAR(a[0].s0[i], b[0].s0[i], 1e-6 * a[0].s0[i])
+        << i;  // single precision may sum in another order
+}
