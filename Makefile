@@ -20,7 +20,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -61,6 +61,16 @@ format: ## let clang-format format the chapters' code and the tests
 	@$(NEED) clang-format noweb python3
 	@doc/weaver/format.py $(shell git ls-files '*.nw')
 	@clang-format -i $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
+
+PREFIX  ?= /usr/local
+BASELINE ?= x86-64-v2
+install: need-program $(BUILD)/CMakeCache.txt ## install programs, libraries, headers and data (PREFIX=/usr/local, DESTDIR=)
+	@cmake --build $(BUILD) -j $(JOBS) --target malus mathtester
+	@cmake/install.sh $(BUILD) "$(PREFIX)" "$(DESTDIR)" "$(BASELINE)" $(JOBS) $(GENERATOR)
+
+ladder: need-program $(BUILD)/CMakeCache.txt ## link each floor with those below it and no others
+	@cmake --build $(BUILD) -j $(JOBS) --target ladder
+	@echo "No floor needs one above it."
 
 format-check: ## whether the chapters' code and the tests are formatted so
 	@$(NEED) clang-format noweb python3
@@ -141,7 +151,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 $(BUILD)/CMakeCache.txt:
-	@cmake --preset release $(GENERATOR) >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
+	@cmake --preset release $(GENERATOR) $(if $(CI),-DMALUS_WERROR=ON) >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
 	@rm -f $(BUILD).configure.log
 
 need-program:

@@ -1,5 +1,5 @@
 // Adding and doubling against the exact Rayleigh solution, printed aerosol, and brute force
-// (nw/world/AddingDoubling.nw).
+// (nw/air/AddingDoubling.nw).
 #include "malus/air/AddingDoubling.hpp"
 
 #include <gtest/gtest.h>

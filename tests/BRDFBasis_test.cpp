@@ -1,4 +1,4 @@
-// A BRDF as a sum of basis functions (nw/matter/BRDFBasis.nw).
+// A BRDF as a sum of basis functions (nw/surface/BRDFBasis.nw).
 #include "malus/surface/BRDFBasis.hpp"
 
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include "ModelChecks.hpp"
 #include "Scratch.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"

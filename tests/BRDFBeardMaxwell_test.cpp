@@ -1,4 +1,4 @@
-// The measured surface (nw/matter/BRDFBeardMaxwell.nw) against its scan, plain sums and Torrance-Sparrow.
+// The measured surface (nw/surface/BRDFBeardMaxwell.nw) against its scan, plain sums and Torrance-Sparrow.
 #include "malus/surface/BRDFBeardMaxwell.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 
 #include "ModelChecks.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 
 using namespace malus;
 

@@ -1,4 +1,4 @@
-// The lobe of the older DIRSIG (nw/matter/BRDFDIRSIG.nw) against sums over fine steps.
+// The lobe of the older DIRSIG (nw/surface/BRDFDIRSIG.nw) against sums over fine steps.
 #include "malus/surface/BRDFDIRSIG.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Lambert's surface in its three polarised forms (nw/matter/BRDFDiffuse.nw).
+// Lambert's surface in its three polarised forms (nw/surface/BRDFDiffuse.nw).
 #include "malus/surface/BRDFDiffuse.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Facets with a weight for each band (nw/matter/BRDFFacets.nw) against Torrance and Sparrow's class.
+// Facets with a weight for each band (nw/surface/BRDFFacets.nw) against Torrance and Sparrow's class.
 #include "malus/surface/BRDFFacets.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The light of many directions at once (nw/matter/CDBRDFModel.nw and the two models that have a fast way).
+// The light of many directions at once (nw/surface/CDBRDFModel.nw and the two models that have a fast way).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 

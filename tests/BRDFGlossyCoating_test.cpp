@@ -1,4 +1,4 @@
-// A clear layer over a matt substrate (nw/matter/BRDFGlossyCoating.nw) against published numbers, the series
+// A clear layer over a matt substrate (nw/surface/BRDFGlossyCoating.nw) against published numbers, the series
 // summed term by term, and facets drawn at random.
 #include "malus/surface/BRDFGlossyCoating.hpp"
 
@@ -10,6 +10,7 @@
 
 #include "ModelChecks.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 
 using namespace malus;
 using namespace malus::testing;

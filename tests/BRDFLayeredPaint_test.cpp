@@ -1,5 +1,5 @@
-// A layered paint (nw/matter/BRDFLayeredPaint.nw) against the glossy coating, Torrance-Sparrow facets, and what all
-// models must pass. Its bodies are solved by nw/world/PaintScattering.nw, which has a test of its own.
+// A layered paint (nw/surface/BRDFLayeredPaint.nw) against the glossy coating, Torrance-Sparrow facets, and what all
+// models must pass. Its bodies are solved by nw/air/PaintScattering.nw, which has a test of its own.
 #include "malus/surface/BRDFLayeredPaint.hpp"
 
 #include <gtest/gtest.h>

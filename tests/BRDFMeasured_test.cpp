@@ -1,4 +1,4 @@
-// Tables of measured matrices and the surface made of one (nw/matter/MuellerTable.nw, BRDFMeasured.nw).
+// Tables of measured matrices and the surface made of one (nw/surface/MuellerTable.nw, BRDFMeasured.nw).
 #include "malus/surface/BRDFMeasured.hpp"
 
 #include <fmt/format.h>

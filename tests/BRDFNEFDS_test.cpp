@@ -1,4 +1,4 @@
-// Five wavelengths and a measured spectrum (nw/matter/BRDFNEFDS.nw).
+// Five wavelengths and a measured spectrum (nw/surface/BRDFNEFDS.nw).
 #include "malus/surface/BRDFNEFDS.hpp"
 
 #include <gtest/gtest.h>

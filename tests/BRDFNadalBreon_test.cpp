@@ -1,4 +1,4 @@
-// Vegetation and soil (nw/matter/BRDFNadalBreon.nw) against the published formula with Snell's angles.
+// Vegetation and soil (nw/surface/BRDFNadalBreon.nw) against the published formula with Snell's angles.
 #include "malus/surface/BRDFNadalBreon.hpp"
 
 #include <gtest/gtest.h>

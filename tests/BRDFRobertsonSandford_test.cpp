@@ -1,4 +1,4 @@
-// Robertson and Sandford's paint (nw/matter/BRDFRobertsonSandford.nw) against the integrals its norms stand for.
+// Robertson and Sandford's paint (nw/surface/BRDFRobertsonSandford.nw) against the integrals its norms stand for.
 #include "malus/surface/BRDFRobertsonSandford.hpp"
 
 #include <gtest/gtest.h>

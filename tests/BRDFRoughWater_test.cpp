@@ -1,4 +1,4 @@
-// Ruffled water (nw/matter/BRDFRoughWater.nw) against published numbers and the formula of Cox and Munk.
+// Ruffled water (nw/surface/BRDFRoughWater.nw) against published numbers and the formula of Cox and Munk.
 #include "malus/surface/BRDFRoughWater.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The rough metal (nw/matter/BRDFTorranceSparrow.nw) against field vectors, std::complex and
+// The rough metal (nw/surface/BRDFTorranceSparrow.nw) against field vectors, std::complex and
 // 4x4 algebra.
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
@@ -14,6 +14,7 @@
 
 #include "DrawnDirections.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/DHRTorranceSparrow.hpp"
 
 using namespace malus;

@@ -1,4 +1,4 @@
-// A model that gives f00 alone (nw/matter/BRDFUnpolarized.nw): its matrix is f00 times the identity in every band, also
+// A model that gives f00 alone (nw/surface/BRDFUnpolarized.nw): its matrix is f00 times the identity in every band, also
 // beyond the block of 64 in which the bands are worked through.
 #include "malus/surface/BRDFUnpolarized.hpp"
 

@@ -1,4 +1,4 @@
-// The face of all reflections and its plain answers (nw/matter/CDBRDFModel.nw).
+// The face of all reflections and its plain answers (nw/surface/CDBRDFModel.nw).
 #include "malus/surface/CDBRDFModel.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 
 #include "ChiSquared.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 
 using namespace malus;
 

@@ -12,6 +12,8 @@
 #include <random>
 #include <string>
 
+#include "malus/base/Table.hpp"
+
 using namespace malus;
 
 namespace {

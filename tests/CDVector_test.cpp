@@ -1,4 +1,4 @@
-// Directions, ray frames and the sign of the rotation between them (nw/light/CDVector.nw).
+// Directions, ray frames and the sign of the rotation between them (nw/base/CDVector.nw).
 #include "malus/base/CDVector.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The table of claims and what it refuses (nw/program/ClaimTable.nw).
+// The table of claims and what it refuses (nw/thesis/ClaimTable.nw).
 #include "malus/thesis/ClaimTable.hpp"
 
 #include <gtest/gtest.h>

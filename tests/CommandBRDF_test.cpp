@@ -1,4 +1,4 @@
-// malus brdf from outside (nw/program/CommandBRDF.nw, ModelRegistry.nw).
+// malus brdf from outside (nw/app/CommandBRDF.nw, ModelRegistry.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -161,9 +161,10 @@ TEST(CommandBRDFInvariant, StandardOutputIsTheFileThatOutWrites) {
 
 TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
   const Scratch scratch;
-  const Table f = answer(scratch,
-                         "brdf --model lambertian --param reflectance=0.5 --param s=0.25 "
-                         "--theta-i 10 --theta-r 20 --phi 0 --format csv");
+  const Table f =
+      answer(scratch,
+             "brdf --model lambertian --param reflectance=0.5 --param polarization_kept=0.25 "
+             "--theta-i 10 --theta-r 20 --phi 0 --format csv");
   EXPECT_DOUBLE_EQ(f.number(0, "f00"), 0.5 / M_PI);
   EXPECT_DOUBLE_EQ(f.number(0, "f33"), 0.125 / M_PI);
   EXPECT_EQ(f.number(0, "f01"), 0);
@@ -270,7 +271,7 @@ TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
 }
 
 // Without shadowing the BRDF has no bound at the horizon (chapter BRDFTorranceSparrow); a table cannot hold that.
-// A file is a parameter: by flag, from a column, and the model is that of its class (nw/matter/BRDFNEFDS.nw).
+// A file is a parameter: by flag, from a column, and the model is that of its class (nw/surface/BRDFNEFDS.nw).
 TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   const Scratch scratch;
   put(scratch / "nef.csv",
@@ -284,7 +285,7 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
                          two(0.05, 0.07), two(0, 0), 15, 40},
                         {SpectralGrid::make({550.0}), 0.4}, 20 * std::numbers::pi / 180);
   const CDMuellerMatrix f = model.getBRDF(BRDFGeometry::fromDegrees(30, 40, 170))[0];
-  const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith=20 ";
+  const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith_deg=20 ";
   put(scratch / "q.csv", "file,theta_i_deg,theta_r_deg,phi_deg\nnef.csv,30,40,170\n");
   const std::string file = "--param file=nef.csv ";
   for (const std::string& way : {file + "--theta-i 30 --theta-r 40 --phi 170 --format csv",

@@ -1,4 +1,4 @@
-// malus fit, from outside (nw/program/CommandFit.nw).
+// malus fit, from outside (nw/app/CommandFit.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The program malus from outside: exit codes, the one line of bad input, files left behind
-// (nw/program/CommandLine.nw, CommandReproduce.nw).
+// (nw/app/CommandLine.nw, CommandReproduce.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// malus merge, from outside (nw/program/CommandMerge.nw).
+// malus merge, from outside (nw/app/CommandMerge.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>

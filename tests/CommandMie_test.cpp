@@ -1,4 +1,4 @@
-// malus mie, from outside (nw/program/CommandMie.nw), and its files in malus sky.
+// malus mie, from outside (nw/app/CommandMie.nw), and its files in malus sky.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// malus products and malus info, from outside (nw/program/CommandProducts.nw).
+// malus products and malus info, from outside (nw/app/CommandProducts.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// malus render from outside (nw/program/CommandRender.nw), and what it says of bad scenes (nw/program/SceneReader.nw,
-// SceneSchema.nw, SceneMaterials.nw).
+// malus render from outside (nw/app/CommandRender.nw), and what it says of bad scenes (nw/files/SceneReader.nw,
+// SceneSchema.nw, SceneMaterials.nw); its tiles (nw/render/Tile.nw,
+// nw/render/Renderer.nw, nw/render/Scene.nw).
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -19,8 +20,11 @@
 #include "Program.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/files/Cube.hpp"
+#include "malus/files/SceneReader.hpp"
 #include "malus/files/SceneSchema.hpp"
 #include "malus/render/Renderer.hpp"
+#include "malus/render/Scene.hpp"
+#include "malus/render/Tile.hpp"
 
 using namespace malus;
 using nlohmann::json;

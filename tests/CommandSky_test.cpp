@@ -1,4 +1,4 @@
-// malus sky, from outside (nw/program/CommandSky.nw).
+// malus sky, from outside (nw/app/CommandSky.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "Program.hpp"
 #include "malus/air/Sky.hpp"
 #include "malus/air/Sun.hpp"
+#include "malus/air/TableSky.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;

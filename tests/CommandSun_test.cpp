@@ -1,4 +1,4 @@
-// malus sun, from outside (nw/program/CommandSun.nw).
+// malus sun, from outside (nw/app/CommandSun.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>

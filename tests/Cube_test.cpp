@@ -1,4 +1,4 @@
-// Cubes on disk and pictures to look at (nw/imaging/Cube.nw, nw/imaging/Quicklooks.nw).
+// Cubes on disk and pictures to look at (nw/files/Cube.nw, nw/files/Quicklooks.nw).
 #include "malus/files/Cube.hpp"
 
 #include <OpenImageIO/imageio.h>
@@ -13,6 +13,7 @@
 #include "Scratch.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/files/Quicklooks.hpp"
+#include "malus/render/Tile.hpp"
 
 using namespace malus;
 

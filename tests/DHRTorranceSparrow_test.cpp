@@ -1,5 +1,5 @@
 // The light that single reflections lose: against an integral in other coordinates, a sum over
-// the hemisphere, drawn facets, and the printed table 7.1 (nw/matter/DHRTorranceSparrow.nw).
+// the hemisphere, drawn facets, and the printed table 7.1 (nw/surface/DHRTorranceSparrow.nw).
 #include "malus/surface/DHRTorranceSparrow.hpp"
 
 #include <gtest/gtest.h>

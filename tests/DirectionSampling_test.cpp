@@ -1,5 +1,5 @@
 // Directions over the hemisphere and the random numbers behind them
-// (nw/matter/DirectionSampling.nw).
+// (nw/surface/DirectionSampling.nw, nw/base/Random.nw).
 #include "malus/surface/DirectionSampling.hpp"
 
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 
 #include "ChiSquared.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 
 using namespace malus;
 

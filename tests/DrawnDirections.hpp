@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ChiSquared.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/CDBRDFModel.hpp"
 
 namespace malus::testing {

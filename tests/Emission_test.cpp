@@ -1,4 +1,4 @@
-// What surfaces emit (nw/matter/Emission.nw).
+// What surfaces emit (nw/surface/Emission.nw).
 #include "malus/surface/Emission.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The sentences that a user or a programmer meets when something is wrong (nw/light/Error.nw).
+// The sentences that a user or a programmer meets when something is wrong (nw/base/Error.nw).
 #include "malus/base/Error.hpp"
 
 #include <gtest/gtest.h>

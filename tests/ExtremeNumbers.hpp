@@ -1,4 +1,4 @@
-// Every numeric flag of a command at numbers that nobody means (nw/program/Command*.nw): the answer is finite, or one line
+// Every numeric flag of a command at numbers that nobody means (nw/app/Command*.nw): the answer is finite, or one line
 // with exit code 2 and nothing else. Include after Program.hpp.
 #pragma once
 #include <gtest/gtest.h>

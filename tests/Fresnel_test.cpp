@@ -1,5 +1,5 @@
 // A smooth boundary against std::complex, Maxwell's boundary conditions and printed values
-// (nw/matter/Fresnel.nw).
+// (nw/surface/Fresnel.nw).
 #include "malus/surface/Fresnel.hpp"
 
 #include <gtest/gtest.h>

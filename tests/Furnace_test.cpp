@@ -1,5 +1,5 @@
 // White furnaces for every sampling and number of rays, and the trial that warns of those that fail
-// (nw/imaging/ImportanceSampling.nw).
+// (nw/render/SamplingTrial.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "Worlds.hpp"
 #include "malus/render/ImportanceSampling.hpp"
+#include "malus/render/SamplingTrial.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 #include "malus/surface/Emission.hpp"

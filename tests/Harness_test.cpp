@@ -1,4 +1,4 @@
-// Items, claims, verdicts and what changed (nw/program/Harness.nw).
+// Items, claims, verdicts and what changed (nw/thesis/Harness.nw).
 #include "malus/thesis/Harness.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ struct Data : Scratch {
         "if (term eq 'svg') set terminal svg; else set terminal pngcairo\nset output out\n"
         "set datafile separator ','\nplot 'curve.csv' using 1:2 with lines\n");
   }
-  Run run(std::vector<std::string> ids) const {
+  Reproduction run(std::vector<std::string> ids) const {
     return reproduce({std::move(ids), path / "out", path}, readInventory(path), functions);
   }
 };
@@ -148,7 +148,7 @@ TEST(HarnessIdentity, AClaimIsStatedOnce) {
 
 TEST(HarnessInvariant, ARunLeavesDataPicturesAndNoComplaint) {
   const Data data;
-  const Run run = data.run({"T1"});
+  const Reproduction run = data.run({"T1"});
   ASSERT_EQ(run.items.size(), 1u);
   EXPECT_EQ(run.items[0].failure, "");
   EXPECT_TRUE(run.changes.empty());
@@ -162,7 +162,7 @@ TEST(HarnessInvariant, ARunLeavesDataPicturesAndNoComplaint) {
 
 TEST(HarnessInvariant, AFailureNamesItsItemAndSavesNothing) {
   const Data data;
-  const Run run = data.run({});
+  const Reproduction run = data.run({});
   ASSERT_EQ(run.items.size(), 3u);  // T4 is not built
   EXPECT_EQ(run.items[1].failure, "the second half is missing");
   EXPECT_EQ(run.items[2].failure, "the item states no claim");
@@ -173,7 +173,7 @@ TEST(HarnessInvariant, AFailureNamesItsItemAndSavesNothing) {
 TEST(HarnessInvariant, APictureThatCannotBeDrawnIsAFailure) {
   const Data data;
   put(data / "plots" / "curve.gp", "plot 'no_such_file.csv'\n");
-  const Run run = data.run({"T1"});
+  const Reproduction run = data.run({"T1"});
   EXPECT_EQ(run.gnuplot_missing, run.items[0].failure.empty());
   std::filesystem::remove(data / "plots" / "curve.gp");
   EXPECT_NE(data.run({"T1"}).items[0].failure.find("curve.gp"), std::string::npos);
@@ -249,7 +249,7 @@ TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNot
 TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {
   const Data data("T9,gone,reproduced\n" + all_committed);
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
-  const Run whole = data.run({});
+  const Reproduction whole = data.run({});
   ASSERT_EQ(whole.changes.size(), 1u);
   EXPECT_EQ(whole.changes[0].item, "T9");
 }

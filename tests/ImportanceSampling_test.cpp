@@ -1,4 +1,4 @@
-// Directions drawn where the light comes from (nw/imaging/ImportanceSampling.nw).
+// Directions drawn where the light comes from (nw/render/ImportanceSampling.nw).
 #include "malus/render/ImportanceSampling.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "Worlds.hpp"
+#include "malus/render/HemisphereRays.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 

@@ -1,4 +1,4 @@
-// Opening, sizes and names of files that come from others (nw/light/InputFiles.nw).
+// Opening, sizes and names of files that come from others (nw/base/InputFiles.nw).
 #include "malus/base/InputFiles.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Scratch.hpp"
+#include "malus/base/Error.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;

@@ -1,4 +1,5 @@
-// Spectra and optical constants at their doors (nw/world/Material.nw).
+// Spectra and optical constants at their doors (nw/light/MeasuredSpectrum.nw,
+// nw/files/OpticalConstants.nw).
 #include "malus/scene/Material.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 
 #include "Scratch.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/files/OpticalConstants.hpp"
+#include "malus/light/MeasuredSpectrum.hpp"
 
 using namespace malus;
 

@@ -1,5 +1,5 @@
 // The tester of appendix A is itself tested here (nw/light/MathTester.nw,
-// nw/program/mathtester.nw).
+// nw/app/mathtester.nw).
 #include "malus/light/MathTester.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Geometry of the facets against frames built as vectors, their statistics against integrals,
-// the sampler against chi-squared (nw/matter/Microfacets.nw).
+// the sampler against chi-squared (nw/surface/Microfacets.nw).
 #include "malus/surface/Microfacets.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Mie's series (nw/world/Mie.nw) against printed values, Rayleigh's limit, the optical theorem and Fresnel's mirror.
+// Mie's series (nw/air/Mie.nw) against printed values, Rayleigh's limit, the optical theorem and Fresnel's mirror.
 #include "malus/air/Mie.hpp"
 
 #include <gtest/gtest.h>

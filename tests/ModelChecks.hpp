@@ -1,4 +1,4 @@
-// What every model of reflectance must pass, whatever it is (nw/matter/BRDF*.nw). Include this in one file of a
+// What every model of reflectance must pass, whatever it is (nw/surface/BRDF*.nw). Include this in one file of a
 // test program: it counts allocations by its own operator new.
 #pragma once
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "DrawnDirections.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/CDBRDFModel.hpp"
 #include "malus/surface/DirectionSampling.hpp"
 

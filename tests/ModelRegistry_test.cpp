@@ -1,4 +1,4 @@
-// The promises of the models (nw/program/ModelRegistry.nw), each computed.
+// The promises of the models (nw/surface/ModelRegistry.nw), each computed.
 #include "malus/surface/ModelRegistry.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include <string>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Random.hpp"
 
 using namespace malus;
 using namespace malus::testing;

@@ -1,4 +1,4 @@
-// A scene may mix any of the models by name (nw/program/ModelRegistry.nw, SceneMaterials.nw).
+// A scene may mix any of the models by name (nw/surface/ModelRegistry.nw, SceneMaterials.nw).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,11 +31,11 @@ json mixedScene() {
        {{"model", "dirsig"},
         {"reflectance", 0.2},
         {"height", 1},
-        {"width", 30},
+        {"width_deg", 30},
         {"shape", "cone"}}},
       {"copper-015",
        {{"model", "glossy-coating"}, {"n", 1.5}, {"reflectance", 0.4}, {"sigma", 0.1}}},
-      {"copper-020", {{"model", "rough-water"}, {"wind", 5}, {"reflectance", 0.03}}},
+      {"copper-020", {{"model", "rough-water"}, {"wind_m_s", 5}, {"reflectance", 0.03}}},
       {"copper-030",
        {{"model", "robertson-sandford"},
         {"emissivity", 0.5},
@@ -93,9 +93,9 @@ TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
 TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
   const Scratch scratch;
   json scene = mixedScene();
-  scene["materials"]["copper-015"] = {
-      {"model", "layered-paint"}, {"pigment_n", 2.75}, {"radius", 110}, {"pvc", 0.1},
-      {"thickness", 20},          {"sigma", 0.1}};
+  scene["materials"]["copper-015"] = {{"model", "layered-paint"}, {"pigment_n", 2.75},
+                                      {"radius_nm", 110},         {"pvc", 0.1},
+                                      {"thickness_um", 20},       {"sigma", 0.1}};
   put(scratch / "s.json", scene.dump(1));
   const RenderedImage frame = renderScene(readScene(scratch / "s.json"));
   for (std::size_t y = 0; y < frame.height; ++y)
@@ -104,7 +104,7 @@ TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
       ASSERT_GT(s[0], 0);
       ASSERT_LE(std::sqrt(s[1] * s[1] + s[2] * s[2] + s[3] * s[3]), s[0] * (1 + 1e-6));
     }
-  scene["materials"]["copper-015"]["radius"] =
+  scene["materials"]["copper-015"]["radius_nm"] =
       50000;  // negative control: too large for the series
   put(scratch / "s.json", scene.dump(1));
   const Outcome outcome = malusIn(scratch.path, "render s.json --out a");
@@ -131,7 +131,7 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
       {"model", "nefds"},
       {"file", "nef.csv"},
       {"dhr", {{"wavelength_nm", {400, 700}}, {"values", {0.3, 0.5}}}},
-      {"dhr_zenith", 10}};
+      {"dhr_zenith_deg", 10}};
   put(scratch / "there/s.json", scene.dump(1));
   const std::string table =
       "wavelength_nm,n,k,bias,sigma\n440,1.5,0,0.03,0.2\n660,1.49,0,0.04,0.3\n";

@@ -1,5 +1,5 @@
 // What a scene is told before it is rendered: defaults, notices and refusals of sensors and samplings
-// (nw/program/SceneReader.nw, nw/program/CommandRender.nw).
+// (nw/files/SceneReader.nw, nw/app/CommandRender.nw).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,9 @@
 #include "Program.hpp"
 #include "malus/app/CommandRender.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"
+#include "malus/render/Scene.hpp"
 
 using namespace malus;
 using nlohmann::json;

@@ -1,4 +1,4 @@
-// Light among pigment (nw/world/PaintScattering.nw) against adding and doubling without a face, single scattering
+// Light among pigment (nw/air/PaintScattering.nw) against adding and doubling without a face, single scattering
 // turned by vectors, and the conservation of light.
 #include "malus/air/PaintScattering.hpp"
 

@@ -1,4 +1,4 @@
-// The face of a paint (nw/matter/PaintSurface.nw) against Fresnel, the glossy coating and Torrance-Sparrow facets.
+// The face of a paint (nw/surface/PaintSurface.nw) against Fresnel, the glossy coating and Torrance-Sparrow facets.
 #include "malus/surface/PaintSurface.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The rule that forgives roots (nw/matter/PanelQuadrature.nw) against integrals in closed form.
+// The rule that forgives roots (nw/base/PanelQuadrature.nw) against integrals in closed form.
 #include "malus/base/PanelQuadrature.hpp"
 
 #include <gtest/gtest.h>

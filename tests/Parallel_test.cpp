@@ -1,7 +1,10 @@
-// Work in several threads (nw/light/Parallel.nw).
+// Work in several threads (nw/base/Parallel.nw).
 #include "malus/base/Parallel.hpp"
 
 #include <gtest/gtest.h>
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
 
 #include <atomic>
 #include <chrono>
@@ -41,6 +44,30 @@ class Meeting {
   std::condition_variable all_;
   int missing_;
 };
+
+#if defined(__x86_64__)
+// Every body computes with the caller's switches for tiny numbers, however oneTBB's threads were used before.
+TEST(ParallelInvariant, BodiesHaveTheCallersSwitchesForTinyNumbers) {
+  constexpr unsigned tiny_is_zero =
+      0x8040;  // flush to zero, denormals are zero (Intel's manual, MXCSR)
+  const unsigned before = _mm_getcsr();
+  for (const unsigned wanted : {0u, tiny_is_zero, 0u})
+    for (const int threads : {0, 3}) {
+      _mm_setcsr((before & ~tiny_is_zero) | wanted);
+      std::vector<unsigned> seen(64, ~0u);
+      malus::parallelFor(
+          seen.size(),
+          [&](std::size_t i) {
+            std::this_thread::sleep_for(
+                std::chrono::milliseconds(1));  // so that others come, too
+            seen[i] = _mm_getcsr() & tiny_is_zero;
+          },
+          threads);
+      _mm_setcsr(before);
+      for (const unsigned bits : seen) EXPECT_EQ(bits, wanted) << threads;
+    }
+}
+#endif
 }  // namespace
 
 TEST(ParallelIdentity, EveryNumberComesOnce) {

@@ -16,6 +16,7 @@
 #include "Program.hpp"
 #include "malus/files/Cube.hpp"
 #include "malus/render/Renderer.hpp"
+#include "malus/render/Scene.hpp"
 
 using namespace malus;
 

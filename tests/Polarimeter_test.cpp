@@ -1,4 +1,4 @@
-// Filters before pixels, the way back, noise (nw/imaging/Polarimeter.nw).
+// Filters before pixels, the way back, noise (nw/render/Polarimeter.nw).
 #include "malus/render/Polarimeter.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "malus/base/Error.hpp"
+#include "malus/render/Tile.hpp"
 
 using namespace malus;
 

@@ -1,5 +1,5 @@
 // The radiometry against answers that do not come from it: furnaces, form factors, cavities, an image plane, and the
-// program malus brdf (explained in nw/imaging/ImportanceSampling.nw).
+// program malus brdf (explained in nw/render/ImportanceSampling.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 
 #include "Program.hpp"
 #include "Worlds.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/render/Sensor.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"

@@ -1,4 +1,4 @@
-// The light that leaves surfaces (nw/imaging/Radiometry.nw).
+// The light that leaves surfaces (nw/render/Radiometry.nw, nw/render/HemisphereRays.nw).
 #include "malus/render/Radiometry.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 
 #include "malus/air/RayleighSky.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
+#include "malus/render/HemisphereRays.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
@@ -344,7 +346,7 @@ TEST(RadiometryIdentity, ReseedingMakesAllPixelsAlike) {
   Radiometry::Ray one = looking({}, {0.5, 0.3, 1}, {0, 1, 0}), other = one;
   other.pixel = 7;
   const RadiometryOptions fault{
-      .sampling = Sampling::random, .rays = {20}, .reseed_every_pixel = true};
+      .sampling = Sampling::random, .rays = {20}, .faults = {.reseed_every_pixel = true}};
   EXPECT_EQ(apart(seen(world, fault, one), seen(world, fault, other)), 0.0);
   const RadiometryOptions sound{.sampling = Sampling::random, .rays = {20}};
   EXPECT_GT(apart(seen(world, sound, one), seen(world, sound, other)), 1e-3);
@@ -376,7 +378,7 @@ TEST(RadiometryIdentity, SunSampledTwiceIsAFaultThatShows) {
   const auto largest = [&](bool fault) {
     const Radiometry radiometry(
         world, tracer,
-        {.sampling = Sampling::random, .rays = {91}, .sun_sampled_twice = fault});
+        {.sampling = Sampling::random, .rays = {91}, .faults = {.sun_sampled_twice = fault}});
     double most = 0;
     for (std::uint64_t pixel = 0; pixel < 4000; ++pixel) {
       Radiometry::Ray ray = looking({}, {0.1, 0.1, 1}, {1, 0, 0});

@@ -1,4 +1,4 @@
-// What rays meet (nw/imaging/RayTracer.nw), against a search through all triangles in double precision.
+// What rays meet (nw/render/RayTracer.nw), against a search through all triangles in double precision.
 #include "malus/render/RayTracer.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/DirectionSampling.hpp"
 
 using namespace malus;

@@ -1,4 +1,4 @@
-// Optical depth and depolarisation of air (nw/world/RayleighAir.nw).
+// Optical depth and depolarisation of air (nw/air/RayleighAir.nw).
 #include "malus/air/RayleighAir.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The tabulated Rayleigh sky and the air before the camera (nw/world/RayleighSky.nw).
+// The tabulated Rayleigh sky and the air before the camera (nw/air/RayleighSky.nw).
 #include "malus/air/RayleighSky.hpp"
 
 #include <gtest/gtest.h>

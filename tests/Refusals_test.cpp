@@ -16,6 +16,8 @@
 #include "malus/files/SceneReader.hpp"
 #include "malus/files/SceneSchema.hpp"
 #include "malus/render/Renderer.hpp"
+#include "malus/render/Scene.hpp"
+#include "malus/render/Tile.hpp"
 
 using namespace malus;
 using nlohmann::json;
@@ -132,12 +134,15 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
       {"/radiometry/rays", json::array({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}),
        "has 17 entries, and 16 are allowed"},
       {"/materials/paint/sigmaa", 1,
-       "materials.paint.sigmaa: is not a known key here; known are: reflectance, s, model, "
+       "materials.paint.sigmaa: is not a known key here; known are: reflectance, "
+       "polarization_kept, model, "
        "temperature_K\n"},
       {"/materials/paint/reflectancee", 1,
-       "did you mean reflectance? known are: reflectance, s, model, temperature_K\n"},
+       "did you mean reflectance? known are: reflectance, polarization_kept, model, "
+       "temperature_K\n"},
       {"/materials/paint",
-       json::parse(R"({"model": "dirsig", "reflectance": 0.5, "height": 1e6, "width": 40})"),
+       json::parse(
+           R"({"model": "dirsig", "reflectance": 0.5, "height": 1e6, "width_deg": 40})"),
        "s.json:"},
   };
   for (const BadScene& bad : cases)
@@ -160,7 +165,7 @@ TEST(RefusalsIdentity, ACameraThatMovesOutOfTheWorldIsRefused) {
 
 TEST(RefusalsIdentity, AModelsOwnComplaintNamesTheMaterialOfTheScene) {
   const json material =
-      json::parse(R"({"model": "dirsig", "reflectance": 0.5, "height": 1e6, "width": 40})");
+      json::parse(R"({"model": "dirsig", "reflectance": 0.5, "height": 1e6, "width_deg": 40})");
   expectRefusal(Workplace(with("/materials/paint", material)), "render s.json --dry-run",
                 "materials.paint: dirsig: ");
 }

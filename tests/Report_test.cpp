@@ -1,4 +1,4 @@
-// One run, reported in three ways (nw/program/Report.nw).
+// One run, reported in three ways (nw/thesis/Report.nw).
 #include "malus/thesis/Report.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 using namespace malus;
 
 namespace {
-Run sampleRun() {
+Reproduction sampleRun() {
   ItemResult one{{"T1", "table", "One & only", "page 1"},
                  {},
                  {{"curve", "A <curve>", true}},
@@ -24,7 +24,7 @@ Run sampleRun() {
   one.claims[0].row.sentence = "a < b";
   one.claims[2].row.sentence = "sentence";
   ItemResult two{{"T2", "table", "Two", ""}, {}, {}, {}, {}, "it broke"};
-  Run run;
+  Reproduction run;
   run.items = {one, two};
   run.changes = {{"T1", "r", "differs", "reproduced"}, {"T1", "x", "erratum", ""}};
   return run;
@@ -57,7 +57,7 @@ TEST(ReportIdentity, TheSummaryTellsCountsFailuresAndChanges) {
 
 // Of eleven claims that are reproduced, one repeats, three are fitted with two unknowns, two are ours, and two have labels.
 TEST(ReportIdentity, RepeatsLabelsAndUnknownsAreNotCounted) {
-  Run run = sampleRun();
+  Reproduction run = sampleRun();
   auto& claims = run.items[0].claims;
   const Claim holds = claims[0];
   claims.assign(11, holds);
@@ -80,7 +80,7 @@ TEST(ReportIdentity, RepeatsLabelsAndUnknownsAreNotCounted) {
 }
 
 TEST(ReportIdentity, OneScreenHoldsManyItemsAndManyChanges) {
-  Run run = sampleRun();
+  Reproduction run = sampleRun();
   run.items.resize(60, run.items[0]);
   run.changes.resize(100, run.changes[0]);
   EXPECT_LE(occurrences(summaryText(run, "out"), "\n"), 50u);
@@ -108,7 +108,7 @@ TEST(ReportIdentity, ValuesBecomeCommands) {
 
 TEST(ReportInvariant, APartialRunLeavesTheWholeReportAlone) {
   const Scratch scratch;
-  Run run = sampleRun();
+  Reproduction run = sampleRun();
   writeReport(run, scratch / "out");
   const std::string whole = contents(scratch / "out/report.json"),
                     values = contents(scratch / "out/values.tex");

@@ -1,5 +1,5 @@
 // The whole reproduction, once: the report that the build keeps up to date with the program and validation/
-// (nw/program/CommandReproduce.nw). ctest brings it up to date before this test begins.
+// (nw/thesis/CommandReproduce.nw). ctest brings it up to date before this test begins.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Lobes to draw from (nw/matter/RingLobe.nw).
+// Lobes to draw from (nw/surface/RingLobe.nw).
 #include "malus/surface/RingLobe.hpp"
 
 #include <gtest/gtest.h>

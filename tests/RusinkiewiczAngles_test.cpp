@@ -1,4 +1,4 @@
-// Half-way and difference angles (nw/matter/RusinkiewiczAngles.nw) against vectors that are turned in space.
+// Half-way and difference angles (nw/surface/RusinkiewiczAngles.nw) against vectors that are turned in space.
 #include "malus/surface/RusinkiewiczAngles.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The axes of the pictures that framing, pushbroom and line-scanning cameras take (nw/imaging/Sensor.nw).
+// The axes of the pictures that framing, pushbroom and line-scanning cameras take (nw/render/Sensor.nw).
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// Scattering matrices as series (nw/world/Scatterer.nw).
+// Scattering matrices as series (nw/air/Scatterer.nw).
 #include "malus/air/Scatterer.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "malus/base/Error.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 

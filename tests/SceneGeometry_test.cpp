@@ -1,4 +1,4 @@
-// Meshes, their places and their door (nw/world/SceneGeometry.nw).
+// Meshes, their places and their door (nw/scene/SceneGeometry.nw).
 #include "malus/scene/SceneGeometry.hpp"
 
 #include <fmt/format.h>

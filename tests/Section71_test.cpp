@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "Items.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 

@@ -12,6 +12,7 @@
 
 #include "Items.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/render/Scene.hpp"
 #include "malus/thesis/FlatPlate.hpp"
 #include "malus/thesis/Pictures.hpp"
 

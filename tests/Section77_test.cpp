@@ -9,6 +9,7 @@
 #include <string>
 
 #include "Items.hpp"
+#include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "Items.hpp"
+#include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;

@@ -1,4 +1,4 @@
-// Poses, pixels and bands (nw/imaging/Platform.nw, nw/imaging/Sensor.nw).
+// Poses, pixels and bands (nw/render/Platform.nw, nw/render/Sensor.nw).
 #include "malus/render/Sensor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Laws of sizes (nw/world/SizeLaws.nw): their moments, and that enough radii stand for them.
+// Laws of sizes (nw/air/SizeLaws.nw): their moments, and that enough radii stand for them.
 #include "malus/air/SizeLaws.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Skies in scenes, from the JSON text to the picture: a mirror reads the sky back, a turned world looks the same, the
-// record says what was known of the polarisation (nw/program/SceneReader.nw, nw/world/RayleighSky.nw, nw/world/Sky.nw).
+// record says what was known of the polarisation (nw/files/SceneReader.nw, nw/air/RayleighSky.nw, nw/air/Sky.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 
 #include "Program.hpp"
 #include "malus/air/RayleighSky.hpp"
+#include "malus/base/Table.hpp"
+#include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"
 
 using namespace malus;

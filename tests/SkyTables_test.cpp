@@ -1,4 +1,4 @@
-// Tables of the sky in other forms than a grid of Stokes vectors (nw/world/SkyTables.nw).
+// Tables of the sky in other forms than a grid of Stokes vectors (nw/air/SkyTables.nw).
 #include "malus/air/SkyTables.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,9 @@
 #include <sstream>
 
 #include "malus/air/RayleighSky.hpp"
+#include "malus/air/TableSky.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 

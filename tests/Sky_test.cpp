@@ -1,4 +1,4 @@
-// The sky as the radiometry asks it, tables of it, and a haze (nw/world/Sky.nw).
+// The sky as the radiometry asks it, tables of it, and a haze (nw/air/Sky.nw, nw/air/TableSky.nw).
 #include "malus/air/Sky.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "malus/air/Sun.hpp"
+#include "malus/air/TableSky.hpp"
+#include "malus/base/Table.hpp"
 
 using namespace malus;
 

@@ -1,4 +1,4 @@
-// Scrambled Sobol points (nw/imaging/SobolPoints.nw).
+// Scrambled Sobol points (nw/base/SobolPoints.nw).
 #include "malus/base/SobolPoints.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ChiSquared.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/DirectionSampling.hpp"
 
 using namespace malus;

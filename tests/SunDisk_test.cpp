@@ -1,5 +1,5 @@
 // The sun's disk against answers that do not come from the radiometry: segments and lenses of circles, Fresnel's
-// reflectance, and sums over the disk (explained in nw/imaging/Radiometry.nw, section "The sun's disk").
+// reflectance, and sums over the disk (explained in nw/render/Radiometry.nw, section "The sun's disk").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ World sunlit(World world, const CDVector& to_sun, double half_angle_rad = alpha,
 }
 
 // White matt ground and something above it. The edge between the ground's triangles does not run through the origin:
-// rays start clear of edges (nw/imaging/RayTracer.nw), and so beside the point that is looked at.
+// rays start clear of edges (nw/render/RayTracer.nw), and so beside the point that is looked at.
 World groundUnder(const Mesh& above) {
   World world;
   world.grid = oneBand();
@@ -364,7 +364,7 @@ TEST(SunDiskInvariant, NegativeControlsOfTheGlint) {
   const World point = sunlit(worldOf(plate(glass, 1)), glint.toSun(), 0);
   EXPECT_GT(estimate(point, options, glint.ray(), 10).mean[0], 1.3 * expected);
   auto fault = options;
-  fault.sun_sampled_twice = true;
+  fault.faults.sun_sampled_twice = true;
   const World disk = sunlit(worldOf(plate(glass, 1)), glint.toSun());
   EXPECT_GT(estimate(disk, fault, glint.ray(), 500).mean[0], 1.8 * expected);
 }

@@ -1,4 +1,4 @@
-// Where the sun stands and how bright it is (nw/world/Sun.nw).
+// Where the sun stands and how bright it is (nw/air/Sun.nw).
 #include "malus/air/Sun.hpp"
 
 #include <gtest/gtest.h>

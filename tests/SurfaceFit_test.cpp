@@ -1,4 +1,4 @@
-// Fitting n, k, sigma and the diffuse term to samples (nw/matter/SurfaceFit.nw).
+// Fitting n, k, sigma and the diffuse term to samples (nw/surface/SurfaceFit.nw).
 #include "malus/surface/SurfaceFit.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "malus/base/Error.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 #include "malus/surface/DHRTorranceSparrow.hpp"
 #include "malus/surface/DirectionSampling.hpp"

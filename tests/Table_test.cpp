@@ -1,4 +1,4 @@
-// The door through which numbers come and go (nw/light/Table.nw).
+// The door through which numbers come and go (nw/base/Table.nw).
 #include "malus/base/Table.hpp"
 
 #include <gtest/gtest.h>

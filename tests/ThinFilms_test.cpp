@@ -1,4 +1,4 @@
-// Boundaries with films (nw/matter/ThinFilms.nw) against Fresnel, Airy's sum, and quarter waves.
+// Boundaries with films (nw/surface/ThinFilms.nw) against Fresnel, Airy's sum, and quarter waves.
 #include "malus/surface/ThinFilms.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The parts of a world, and what must hold between them (nw/world/World.nw).
+// The parts of a world, and what must hold between them (nw/scene/World.nw).
 #include "malus/scene/World.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A program among others, from outside (nw/light/Process.nw, nw/program/CommandRender.nw, CommandLine.nw): two writers, closed
+// A program among others, from outside (nw/app/Process.nw, nw/app/CommandRender.nw, CommandLine.nw): two writers, closed
 // and full streams, lost and damaged files, limits, a setting sun, a moved program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@
 #include "Program.hpp"
 #include "malus/app/CommandLine.hpp"
 #include "malus/base/Error.hpp"
-#include "malus/base/Process.hpp"
 #include "malus/files/Cube.hpp"
+#include "malus/files/OutputLock.hpp"
 
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -371,10 +371,10 @@ TEST(WritersInvariant, NamesThatNoRecordCanHoldAreRefusedAtTheDoor) {
 
 TEST(WritersIdentity, UTF8IsRecognised) {
   for (const char* good : {"", "plain", "\xc3\xa4", "\xe2\x82\xac", "\xf0\x9f\x8c\x88"})
-    EXPECT_TRUE(malus::isUTF8(good)) << good;
+    EXPECT_TRUE(malus::endOfUTF8(good) == std::string_view::npos) << good;
   for (const char* bad :
        {"\xe4", "\xc3", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "a\x80"})
-    EXPECT_FALSE(malus::isUTF8(bad));
+    EXPECT_FALSE(malus::endOfUTF8(bad) == std::string_view::npos);
 }
 
 TEST(WritersInvariant, TheDryRunCountsFilesAndBytes) {
@@ -458,14 +458,18 @@ TEST(WritersInvariant, ASceneThatRunsThroughSunsetRenders) {
 TEST(WritersInvariant, AMovedProgramFindsItsDataOrSaysWhatIsMissing) {
   const Place place;
   const fs::path bin = place.scratch / "moved/bin";
-  fs::create_directories(bin);
-  fs::copy_file(MALUS_PROGRAM, bin / "malus");
+  const fs::path build = fs::path(MALUS_PROGRAM).parent_path(), lib = bin.parent_path() / "lib";
+  fs::create_directories(bin), fs::create_directories(lib);
+  for (const char* program : {"malus", "malus-reproduce"})
+    fs::copy_file(build / program, bin / program);
+  for (const auto& library : fs::directory_iterator(build / "lib"))
+    if (library.path().filename() != "libmalus_pictures.so")
+      fs::copy_file(library.path(), lib / library.path().filename());
   const std::string moved = "moved/bin/malus ";
   const Outcome lame = runIn(place.scratch.path, moved + "render s.json --dry-run");
   EXPECT_EQ(lame.code, 2);
   EXPECT_NE(lame.err.find("libmalus_pictures.so"), std::string::npos) << lame.err;
-  fs::copy_file(fs::path(MALUS_PROGRAM).parent_path() / "libmalus_pictures.so",
-                bin / "libmalus_pictures.so");
+  fs::copy_file(build / "lib" / "libmalus_pictures.so", lib / "libmalus_pictures.so");
   EXPECT_EQ(runIn(place.scratch.path, moved + "render s.json --out b").code, 0);
   put(place.scratch / "moved/share/malus/validation/inventory.csv", "spoilt");
   const Outcome list = runIn(place.scratch.path, moved + "reproduce T3.1 --out r");

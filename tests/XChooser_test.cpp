@@ -29,7 +29,7 @@ TEST(OwnChooserInvariant, ThePromisesAreKeptAndTheTableIsWhole) {
   EXPECT_EQ(ends, modelEntries().size());
   EXPECT_EQ(cells, 6 * modelEntries().size());
   for (const ModelEntry& entry : modelEntries())
-    EXPECT_TRUE(std::filesystem::exists("nw/matter/" + entry.traits.chapter + ".nw"))
+    EXPECT_TRUE(std::filesystem::exists("nw/surface/" + entry.traits.chapter + ".nw"))
         << entry.name;
-  EXPECT_FALSE(std::filesystem::exists("nw/matter/BRDFNoSuch.nw"));  // negative control
+  EXPECT_FALSE(std::filesystem::exists("nw/surface/BRDFNoSuch.nw"));  // negative control
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The woven book, looked at from outside: book_test.py [BOOK [HEADERS]]; default build/book and generated.
+"""The woven book, looked at from outside: book_test.py [BOOK [HEADERS]]; default build/book and generated/malus.
 
 Each page must be valid HTML, fit a phone, a tablet and a desk without sideways scrolling, and leave the browser's
 console silent; its colours must be told apart in the light and in the dark; every public name of every header must
@@ -25,7 +25,7 @@ import browser
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BOOK = os.path.join(ROOT, "build", "book")
-HEADERS = os.path.join(ROOT, "generated")
+HEADERS = os.path.join(ROOT, "generated", "malus")
 WIDTHS = (360, 800, 1400)
 LEAST_CONTRAST = 4.5  # of text on its ground, as WCAG 2 wants it at level AA
 

@@ -4,7 +4,7 @@
     mutants.py BUILD [--count N] [--seed S] [--chapter FLOOR/NAME]... [--jobs N] [--report FILE.csv] [--again]
 
 BUILD is a finished build with tests. A fault is one change of one token in the tangled code of a
-chapter of light, matter, world or imaging: an operator (+ for -, * for /, += for -=), a comparison
+chapter of the floors from base to render: an operator (+ for -, * for /, += for -=), a comparison
 (< for <=, == for !=, && for ||), a constant (a whole number plus one, a fraction 1 % larger) or a
 sign. Each chapter has its share of the faults by its number of code lines; which ones they are
 depends on the seed and the chapter's own code alone. A fault that is no C++ is replaced by another.
@@ -42,7 +42,7 @@ import threading
 from typing import TextIO
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FLOORS = ["light", "matter", "world", "imaging"]
+FLOORS = ["base", "light", "surface", "air", "scene", "render"]
 LINES = 1000  # lines apart from each other, for the compiler, where faults are switched
 SWITCH = """#pragma once
 #include <cstdlib>
@@ -330,7 +330,7 @@ def code_lines(path: pathlib.Path) -> int:
 
 
 # headers that many files include and that no file prepares by a macro
-FOREIGN = r"^#include <(?:[a-z_]+|gtest/.*|rapidcheck/.*|fmt/.*|nlohmann/.*|Eigen/.*|boost/math/qu.*)>$"
+FOREIGN = r"^#include <(?:[a-z_]+|gtest/.*|rapidcheck/.*|fmt/.*|nlohmann/.*|boost/math/qu.*)>$"
 
 
 class Build:
@@ -344,6 +344,7 @@ class Build:
         commands = json.loads((self.directory / "compile_commands.json").read_text())
         self.lines = {str(pathlib.Path(c["file"]).resolve()): self.lean(shlex.split(c["command"])) for c in commands}
         self.links: dict[str, list[str]] = {}
+        self.others: list[str] = []
         (self.scratch / "switch.hpp").write_text(SWITCH)
         self.precompiled = self.precompile()
 
@@ -362,7 +363,7 @@ class Build:
     def precompile(self) -> list[str]:
         """The foreign headers of all chapters and tests, compiled once: half of the time of a faulty file."""
         wanted: set[str] = set()
-        for path in [*ROOT.glob("generated/*/*.?pp"), *ROOT.glob("tests/*.?pp")]:
+        for path in [*ROOT.glob("generated/malus/*/*.?pp"), *ROOT.glob("tests/*.?pp")]:
             text = path.read_text()
             if path.parent.name in FLOORS + ["tests"] and not re.search(r"^#define", text, re.M):
                 wanted |= set(re.findall(FOREIGN, text, re.M))
@@ -387,6 +388,18 @@ class Build:
         done = subprocess.run(words, cwd=self.directory, capture_output=True, text=True, errors="replace")
         return done.stderr or "unknown error" if done.returncode else ""
 
+    def foreign(self) -> list[str]:
+        """The libraries of others with which ours are linked."""
+        if not self.others:
+            for name in ("libmalus", "libmalus_scenes", "libmalus_thesis"):
+                listed = subprocess.run(["ninja", "-C", str(self.directory), "-t", "commands", name], capture_output=True, text=True,
+                                        check=True)
+                links = [line for line in listed.stdout.split("\n") if " -shared " in line]
+                for word in (word for line in links for word in shlex.split(line)):
+                    if (word.startswith("-l") or re.match(r"/usr/.*\.so", word)) and word not in self.others:
+                        self.others.append(word)
+        return self.others
+
     def linked(self, test: str, objects: list[pathlib.Path], out: pathlib.Path) -> bool:
         """Link the test with these objects before the library; a recompiled test takes its own object's place."""
         with self.lock:
@@ -399,8 +412,11 @@ class Build:
         words[words.index("-o") + 1] = str(out)
         if any(o.stem == test for o in objects):
             words = [w for w in words if not w.endswith(f"/{test}.cpp.o")]
-        library = words.index("libmalus.a")
-        words[library:library] = [str(o) for o in objects]
+        mine = {o.stem + ".cpp.o" for o in objects}
+        whole = [str(o) for o in sorted(self.directory.glob("CMakeFiles/malus_*.dir/generated/malus/*/*.cpp.o"))
+                 if o.name not in mine and not re.search("malus_(pictures|ladder)", str(o))]
+        words = [w for w in words if not re.match(r"lib/libmalus\w*\.so", w)]
+        words += [*(str(o) for o in objects), *whole, *self.foreign()]
         return subprocess.run(words, cwd=self.directory, capture_output=True).returncode == 0
 
 
@@ -452,7 +468,7 @@ class Trial:
 
     def __init__(self, build: Build, chapter: str, tests: list[pathlib.Path]) -> None:
         self.build, self.chapter, self.tests = build, chapter, tests
-        self.files = [f for f in (ROOT / "generated" / f"{chapter}{suffix}" for suffix in (".hpp", ".cpp")) if f.exists()]
+        self.files = [f for f in (ROOT / "generated" / "malus" / f"{chapter}{suffix}" for suffix in (".hpp", ".cpp")) if f.exists()]
         self.limits: dict[pathlib.Path, int] = {}
         self.together: dict[Fault, int] = {}
         self.programs: dict[pathlib.Path, pathlib.Path | None] = {}
@@ -659,7 +675,7 @@ def main() -> None:
     if untested := [c for c in given.chapter or chapters if not tests.get(c)]:
         sys.exit(f"no test names the chapter {untested[0]} in its first comment; add // ... (nw/{untested[0]}.nw)")
     for chapter in chapters:
-        files = [ROOT / "generated" / f"{chapter}{suffix}" for suffix in (".hpp", ".cpp")]
+        files = [ROOT / "generated" / "malus" / f"{chapter}{suffix}" for suffix in (".hpp", ".cpp")]
         candidates[chapter] = [fault for file in files if file.exists() for fault in faults_of(chapter, file)]
         random.Random(f"{given.seed} {chapter}").shuffle(candidates[chapter])
         weights[chapter] = sum(map(code_lines, files))

@@ -60,7 +60,7 @@ return n * n;
 SECOND = r"""\chapter{Use}\label{ch:second}
 Equation \eqref{eq:first:rs} again, and figure~\ref{fig:F3.9}.\footnote{A note.}
 
-<<matter/use.cpp>>=
+<<surface/use.cpp>>=
 <<Reflect a ray>>
 int main() { return reflect_it(2) > 0; }  // reflect_it is not linked here
 @
@@ -87,7 +87,7 @@ class Workshop(unittest.TestCase):
         self.dir = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.dir)
         self.put("nw/light/first.nw", FIRST)
-        self.put("nw/matter/second.nw", SECOND)
+        self.put("nw/surface/second.nw", SECOND)
         self.put("report/values.tex", "\\malusval{F3.9.brewster}{63.43}\n")
         self.put("report/F3.9/fresnel.svg", SVG)
 
@@ -106,7 +106,7 @@ class Workshop(unittest.TestCase):
         done = subprocess.run(
             [os.path.join(WEAVER, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
              os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/matter/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -115,7 +115,7 @@ class Workshop(unittest.TestCase):
         done = subprocess.run(
             [os.path.join(WEAVER, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
              os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/matter/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -130,7 +130,7 @@ class WovenBook(Workshop):
     def setUp(self) -> None:
         super().setUp()
         self.assertEqual(self.weave(), (0, ""))
-        self.first, self.second = self.get("light-first.html"), self.get("matter-second.html")
+        self.first, self.second = self.get("light-first.html"), self.get("surface-second.html")
 
     def test_links_and_pictures_are_whole(self) -> None:
         self.assertEqual(self.check_links(), (0, ""))
@@ -141,7 +141,7 @@ class WovenBook(Workshop):
         self.assertRegex(self.second, r'\(<a href="light-first.html#eq:first:rs"[^>]*>3.50</a>\)')
 
     def test_chapters_sections_and_figures_are_numbered_through_the_book(self) -> None:
-        self.assertRegex(self.first, r'chapter <a href="matter-second.html#ch:second"[^>]*>2</a>'.replace(" ", "[ \u00a0]", 1))
+        self.assertRegex(self.first, r'chapter <a href="surface-second.html#ch:second"[^>]*>2</a>'.replace(" ", "[ \u00a0]", 1))
         self.assertIn('<section id="the-code"', self.first)
         self.assertRegex(self.second, r'<a href="light-first.html#fig:F3.9"[^>]*>1.1</a>')
 
@@ -151,7 +151,7 @@ class WovenBook(Workshop):
         self.assertRegex(part, r'(?s)<a href="light-first.html">Reflection</a><p>The reflectance is computed by .*chapter.2\.</p></li>')
         self.assertIn('<a rel="up" href="light.html">Light</a>', self.first)
         self.assertIn('<a rel="prev" href="light.html">Light</a>', self.first)
-        self.assertIn('<a rel="next" href="matter.html">Matter</a>', self.first)
+        self.assertIn('<a rel="next" href="surface.html">Surface</a>', self.first)
 
     def test_a_formula_keeps_its_brackets_and_its_comma(self) -> None:
         self.assertRegex(self.first, r'(?s)<span class="glued"><math[^>]*alttext="n=2".*?</math>\.</span>')
@@ -179,10 +179,10 @@ class WovenBook(Workshop):
     def test_a_formula_that_stands_in_many_places_takes_nothing_from_one_to_the_other(self) -> None:
         formula = r"\begin{equation} ((a+b)(c+d))^{2} = |e_{i}|^{2} \label{eq:%s} \end{equation} $((a+b)(c+d))^{2}$ "
         self.put("nw/light/first.nw", FIRST + "\\section{More}\n" + formula % "one" + formula % "two" + r"\eqref{eq:one} \eqref{eq:three}")
-        self.put("nw/matter/second.nw", SECOND + "\\section{More}\n" + formula % "three" + r"\eqref{eq:two}")
+        self.put("nw/surface/second.nw", SECOND + "\\section{More}\n" + formula % "three" + r"\eqref{eq:two}")
         self.assertEqual(self.weave(), (0, ""))
         self.assertEqual(self.check_links(), (0, ""))
-        pages = [self.get("light-first.html"), self.get("matter-second.html")]
+        pages = [self.get("light-first.html"), self.get("surface-second.html")]
         for display in ("block", "inline"):
             found = [re.findall(rf'<math[^>]*alttext="[^"]*a\+b[^"]*" display="{display}">.*?</math>', page, re.DOTALL) for page in pages]
             self.assertEqual([len(formulas) for formulas in found], [2, 1])
@@ -190,21 +190,21 @@ class WovenBook(Workshop):
             self.assertNotIn(" id=", found[0][0])
         for page, labels in zip(pages, (("one", "two"), ("three",))):
             self.assertEqual(re.findall(r'id="eq:(one|two|three)"', page), list(labels))
-        self.assertRegex(pages[0], r'\(<a href="#eq:one"[^>]*>1.1</a>\) \(<a href="matter-second.html#eq:three"[^>]*>2.1</a>\)')
+        self.assertRegex(pages[0], r'\(<a href="#eq:one"[^>]*>1.1</a>\) \(<a href="surface-second.html#eq:three"[^>]*>2.1</a>\)')
         self.assertRegex(pages[1], r'\(<a href="light-first.html#eq:two"[^>]*>1.2</a>\)')
 
     def test_chunks_are_numbered_in_the_order_of_the_book_and_joined_both_ways(self) -> None:
         self.assertRegex(self.first, r'(?s)id="chunk-reflect-a-ray">.*?href="#chunk-reflect-a-ray">1</a>')
         self.assertRegex(self.first, r'class="use" href="#chunk-square-n">⟨Square <code>n</code> <span class="chunk-number">2<')
-        self.assertRegex(self.first, r'Continued in <a href="matter-second.html#chunk-reflect-a-ray"[^>]*>4</a>')
+        self.assertRegex(self.first, r'Continued in <a href="surface-second.html#chunk-reflect-a-ray"[^>]*>4</a>')
         self.assertRegex(self.second, r'Continues <a href="light-first.html#chunk-reflect-a-ray"[^>]*>1</a>')
-        self.assertRegex(self.first, r'Used in <a href="matter-second.html#chunk-matter-use-cpp"[^>]*>3</a>')
+        self.assertRegex(self.first, r'Used in <a href="surface-second.html#chunk-surface-use-cpp"[^>]*>3</a>')
         self.assertIn("+≡", self.second)
 
     def test_identifiers_lead_from_each_use_to_the_definition_and_back(self) -> None:
         self.assertRegex(self.second, r'return <a class="identifier" href="light-first.html#chunk-reflect-a-ray"'.replace("return ", ""))
         self.assertIn("// reflect_it is not linked here", self.second)
-        self.assertRegex(self.first, r'Defines <code>reflect_it</code>, used in <a href="matter-second.html#chunk-matter-use-cpp"')
+        self.assertRegex(self.first, r'Defines <code>reflect_it</code>, used in <a href="surface-second.html#chunk-surface-use-cpp"')
         self.assertRegex(self.get("identifiers.html"), r"<code>reflect_it</code></td><td>Reflect a ray</td>"
                          r"<td><a [^>]*>1</a></td><td><a [^>]*>3</a>")
         self.assertIn("⟨Square <code>n</code>⟩", self.get("chunks.html"))
@@ -256,11 +256,11 @@ class BrokenBook(Workshop):
 
     def test_unknown_label_names_all_places(self) -> None:
         self.put("nw/light/first.nw", FIRST.replace(r"\label{eq:first:rs}", ""))
-        self.fails("nw/light/first.nw:3:", "nw/matter/second.nw:2:", "eq:first:rs")
+        self.fails("nw/light/first.nw:3:", "nw/surface/second.nw:2:", "eq:first:rs")
 
     def test_label_given_twice(self) -> None:
-        self.put("nw/matter/second.nw", SECOND + "\\section{Again}\\label{ch:first}\n")
-        self.fails("nw/matter/second.nw:12:", "ch:first", "nw/light/first.nw")
+        self.put("nw/surface/second.nw", SECOND + "\\section{Again}\\label{ch:first}\n")
+        self.fails("nw/surface/second.nw:12:", "ch:first", "nw/light/first.nw")
 
     def test_unknown_citation(self) -> None:
         self.put("nw/light/first.nw", FIRST.replace("hecht1990", "hecht1991"))

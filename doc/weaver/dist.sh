@@ -12,7 +12,7 @@ for entry in "$@"; do
   chapter=${entry%%:*}
   roots=$(echo "${entry#*:}" | tr ',' ' ')
   # shellcheck disable=SC2086
-  (cd "$work/$name" && doc/weaver/tangle.py --plain generated "$chapter" $roots)
+  (cd "$work/$name" && doc/weaver/tangle.py --plain generated/malus "$chapter" $roots)
 done
 mkdir -p "$(dirname "$out")"
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner -czf "$out" "$name"

@@ -16,7 +16,7 @@ import sys
 import time
 
 # in the order of the build: a part has only what those before it have not made
-PARTS = (("library", ["malus_library"]), ("programs", ["malus", "mathtester"]), ("reproduce", ["reproduce"]),
+PARTS = (("library", ["libmalus", "libmalus_scenes"]), ("programs", ["malus", "mathtester"]), ("reproduce", ["reproduce"]),
          ("weave", ["book"]), ("tests", ["all"]))
 SLOWEST = 15
 

@@ -17,6 +17,7 @@
 #include "Bare.hpp"
 #include "Sampling.hpp"
 #include "malus/air/Sun.hpp"
+#include "malus/base/Random.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/light/CDSpectralVector.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -196,17 +197,17 @@ const std::vector<NamedModel>& namedModels() {
       {"glossy-coating", {{"n", "1.5"}, {"reflectance", "0.5"}, {"sigma", "0.1"}}},
       {"layered-paint",
        {{"pigment_n", "2.75"},
-        {"radius", "110"},
+        {"radius_nm", "110"},
         {"pvc", "0.1"},
-        {"thickness", "5"},
+        {"thickness_um", "5"},
         {"sigma", "0.1"}}},
-      {"rough-water", {{"wind", "5"}, {"reflectance", "0.02"}}},
+      {"rough-water", {{"wind_m_s", "5"}, {"reflectance", "0.02"}}},
       {"beard-maxwell",
        {{"n", "1.5"}, {"k", "0"}, {"bias", "0.002"}, {"sigma", "0.2"}, {"rho_v", "0.01"}}},
       {"nadal-breon", {{"reflectance", "0.1"}, {"rho", "0.03"}, {"beta", "8"}}},
       {"robertson-sandford",
        {{"emissivity", "0.5"}, {"diffuse", "0.3"}, {"b", "0.2"}, {"e", "0.3"}}},
-      {"nefds", {{"file", tables().lasers}, {"dhr", "0.4"}, {"dhr_zenith", "20"}}},
+      {"nefds", {{"file", tables().lasers}, {"dhr", "0.4"}, {"dhr_zenith_deg", "20"}}},
       {"measured", {{"file", tables().matrices}}},
       {"basis", {{"file", (solarSpectrumFile().parent_path() / "basis-coating.csv").string()}}},
   };

@@ -10,6 +10,8 @@
 #include "Door.hpp"
 #include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"
+#include "malus/render/Scene.hpp"
+#include "malus/render/Tile.hpp"
 
 namespace malus::fuzzing::scenes {
 using nlohmann::json;

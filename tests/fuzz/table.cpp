@@ -5,6 +5,9 @@
 
 #include "Door.hpp"
 #include "malus/air/Sky.hpp"
+#include "malus/air/TableSky.hpp"
+#include "malus/files/OpticalConstants.hpp"
+#include "malus/light/MeasuredSpectrum.hpp"
 #include "malus/scene/Material.hpp"
 
 using namespace malus;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "malus/render/Scene.hpp"
+
 namespace bare {
 namespace {
 constexpr float pi = std::numbers::pi_v<float>;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "malus/render/Scene.hpp"
+
 namespace bare {
 struct Material {
   float sigma = 0;        // 0: matt

@@ -13,6 +13,7 @@
 #include "BareImage.hpp"
 #include "malus/air/RayleighSky.hpp"
 #include "malus/render/Radiometry.hpp"
+#include "malus/render/Scene.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 

@@ -1,0 +1,68 @@
+// The installed tree, as its users meet it: moved to another place, its programs find their libraries and data, and the
+// programs of examples/ are built against it and run (nw/base/DataFiles.nw).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "Program.hpp"
+#include "Scratch.hpp"
+
+namespace {
+namespace fs = std::filesystem;
+
+/// The exit code of a shell command; what it prints goes to `log` in the scratch directory.
+int run(const Scratch& scratch, const std::string& command) {
+  const std::string log = (scratch.path / "log").string();
+  return std::system(("(" + command + ") > " + log + " 2>&1").c_str());
+}
+
+TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
+  const Scratch scratch;
+  const std::string first = (scratch.path / "first").string();
+  const std::string moved = (scratch.path / "moved" / "elsewhere").string();
+  ASSERT_EQ(run(scratch, "cmake --install " MALUS_BUILD " --prefix " + first), 0);
+  fs::create_directories(scratch.path / "moved");
+  fs::rename(first, moved);
+  // the data: the sun's spectrum, a scene, the printed values
+  EXPECT_EQ(run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi "
+                                 "0 --irradiance astm-e490"),
+            0);
+  EXPECT_EQ(run(scratch, moved + "/bin/malus reproduce --list"), 0);
+  EXPECT_EQ(run(scratch, moved + "/bin/malus render " + moved +
+                             "/share/malus/scenes/flat-plate.json --tile 0,0,4,4 --out " +
+                             (scratch.path / "out").string()),
+            0);
+  EXPECT_TRUE(fs::exists(scratch.path / "out"));
+  // the control: without its data the same program says so, and ends as for bad input
+  fs::rename(moved + "/share", scratch.path / "hidden");
+  EXPECT_NE(run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi "
+                                 "0 --irradiance astm-e490"),
+            0);
+  fs::rename(scratch.path / "hidden", moved + "/share");
+  // the examples
+  const std::string build = (scratch.path / "examples").string();
+  ASSERT_EQ(run(scratch, "cmake -S examples -B " + build + " -DCMAKE_PREFIX_PATH=" + moved +
+                             " && cmake --build " + build),
+            0);
+  EXPECT_EQ(run(scratch, build + "/reflectance | grep -q '^60,0'"), 0);
+  EXPECT_EQ(run(scratch, build + "/polarized_sky | grep -q '^20,0.67'"), 0);
+  EXPECT_EQ(run(scratch, build + "/rendered_scene " + moved +
+                             "/share/malus/scenes/flat-plate.json | grep -q '^[0-9]'"),
+            0);
+  // and pkg-config, where it is there
+  if (run(scratch, "pkg-config --version") == 0) {
+    EXPECT_EQ(
+        run(scratch, "cd " + build +
+                         " && c++ -o one " MALUS_SOURCE
+                         "/examples/polarized_sky.cpp $(PKG_CONFIG_PATH=$(dirname $(find " +
+                         moved +
+                         " -name malus.pc)) pkg-config --cflags --libs malus) "
+                         "-Wl,-rpath,$(dirname $(find " +
+                         moved + " -name libmalus.so))"),
+        0);
+    EXPECT_EQ(run(scratch, build + "/one"), 0);
+  }
+}
+}  // namespace
