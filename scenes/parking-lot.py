@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A parking lot on a June noon: the larger outdoor scene of malus, about a million triangles.
 
     scenes/parking-lot.py            writes scenes/generated/parking-lot/*.obj (about 25 MB) and scenes/parking-lot.json

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The woven book, looked at from outside: book_test.py [BOOK [HEADERS]]; default build/book and generated/malus.
 
 Each page must be valid HTML, fit a phone, a tablet and a desk without sideways scrolling, and leave the browser's

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plant small faults in the chapters' code and count how many the chapters' own tests notice.
 
     mutants.py BUILD [--count N] [--seed S] [--chapter FLOOR/NAME]... [--jobs N] [--report FILE.csv] [--again]

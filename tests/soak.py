@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Kill, resume, fill the disk, race writers, and compare bits: soak.py PROGRAM [SECONDS] [SEED].
 
 A reference picture is rendered once, undisturbed. Then, until the time is over, one of several mishaps is chosen at random, happens to

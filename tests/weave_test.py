@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
 
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with

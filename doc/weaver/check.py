@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Rules of the house that one chapter alone cannot see.
 
     check.py CHAPTER.nw...

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Which lines of nw/ did the tests reach?
 
     coverage.py BUILD

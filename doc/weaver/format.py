@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Let clang-format format the code of the chapters.
 
     format.py [--check] CHAPTER.nw...

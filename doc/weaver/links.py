@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Check a woven book from outside: every link leads somewhere, and the book needs nothing but itself.
 
     links.py DIR

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draw the map of the book, a house whose floors have a box for each chapter.
 
     map.py ORDER MAP.svg [CHAPTER.nw...]

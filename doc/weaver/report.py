@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The report of `malus reproduce` as a page for people.
 
     report.py REPORT.json...

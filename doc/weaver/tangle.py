@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Tangle one chapter of the book into its C++ files.
 
     tangle.py [--plain | --exact] OUT CHAPTER.nw ROOT...

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Weave the chapters of the book to HTML.
 
     weave.py --out DIR --work DIR --book DIR --report DIR --bibliography FILE.bib CHAPTER...

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What a build from an empty directory costs, part by part, without a compiler cache.
 
     build.py BUILD JOBS
