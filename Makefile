@@ -8,6 +8,7 @@ JOBS   ?= $(shell nproc)
 GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 
 # What Debian 12 calls the things we stand on: to build and run; to weave the book, and to test its weaver.
+# The scripts name /usr/bin/python3, for which Debian's modules are installed: another Python may come first in PATH.
 PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
