@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "malus/base/Error.hpp"
@@ -176,8 +177,8 @@ TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
         for (const double zenith : {0.0, 0.01, 0.7, 1.4}) {
           CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
           const CDVector viewer = CDVector::fromAngles(zenith, 2);
-          model.gatherEach(viewer, from.view(), light.data(), fast);
-          model.CDBRDFModel::gatherEach(viewer, from.view(), light.data(), plain);
+          model.gatherEach(viewer, from.view(), light, fast);
+          model.CDBRDFModel::gatherEach(viewer, from.view(), light, plain);
           EXPECT_LT(apart(fast, plain), 5e-6)
               << bands << " bands " << count << " directions at " << zenith;
         }
@@ -200,8 +201,8 @@ TEST(GatherIdentity, GatherEachAtSingularDirections) {
               from.z.push_back(float(d.z)), from.weight.push_back(0.1f);
         const auto light = unlikeLight(16, 2, 7);
         CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
-        model.gatherEach(v, from.view(), light.data(), fast);
-        model.CDBRDFModel::gatherEach(v, from.view(), light.data(), plain);
+        model.gatherEach(v, from.view(), light, fast);
+        model.CDBRDFModel::gatherEach(v, from.view(), light, plain);
         EXPECT_LT(apart(fast, plain), 2e-5)
             << zenith << " off " << off << " towards " << d.x << " " << d.y << " " << d.z;
       }
@@ -213,11 +214,11 @@ TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
   const Directions from(96);
   auto light = unlikeLight(96, 3, 1);
   CDSpectralVector<CDStokesVector> fast(model.grid()), plain(model.grid());
-  model.gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), fast);
+  model.gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light, fast);
   for (std::size_t i = 0; i < 96; ++i)  // each by a thousandth of a radian, to first order
     for (std::size_t j = 0; j < 3; ++j)
       light[(4 * i + 1) * 3 + j] += 2e-3f * light[(4 * i + 2) * 3 + j];
-  model.CDBRDFModel::gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light.data(), plain);
+  model.CDBRDFModel::gatherEach(CDVector::fromAngles(0.7, 2), from.view(), light, plain);
   EXPECT_GT(apart(fast, plain), 2e-5);
 }
 
@@ -230,9 +231,30 @@ TEST(GatherIdentity, GatherEachOfLambertsSurface) {
     const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}),
                             s);
     CDSpectralVector<CDStokesVector> fast(grid), plain(grid);
-    model.gatherEach({0, 0, 1}, from.view(), light.data(), fast);
-    model.CDBRDFModel::gatherEach({0, 0, 1}, from.view(), light.data(), plain);
+    model.gatherEach({0, 0, 1}, from.view(), light, fast);
+    model.CDBRDFModel::gatherEach({0, 0, 1}, from.view(), light, plain);
     EXPECT_LT(apart(fast, plain), 1e-14) << s;
     EXPECT_EQ(fast.anyPolarized(), s > 0);
+  }
+}
+
+// Light for one direction less, or one number more, is a mistake of the caller, by every way to gather.
+TEST(GatherIdentity, GatherEachRefusesLightOfAnotherLength) {
+  const auto grid = SpectralGrid::make({450.0, 550.0});
+  const BRDFTorranceSparrow rough = mixture(2, as_thesis);
+  const BRDFDiffuse diffuse(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5}), 0);
+  const Directions from(16);
+  const auto light = unlikeLight(16, 2, 5);
+  const std::span<const float> all(light);
+  const auto gathers = [&](const CDBRDFModel& model, std::span<const float> stokes) {
+    CDSpectralVector<CDStokesVector> out(model.grid());
+    model.gatherEach({0, 0, 1}, from.view(), stokes, out);
+    model.CDBRDFModel::gatherEach({0, 0, 1}, from.view(), stokes, out);
+  };
+  for (const CDBRDFModel* model :
+       {static_cast<const CDBRDFModel*>(&rough), static_cast<const CDBRDFModel*>(&diffuse)}) {
+    EXPECT_NO_THROW(gathers(*model, all));
+    EXPECT_THROW(gathers(*model, all.first(all.size() - 8)), MathError);
+    EXPECT_THROW(gathers(*model, all.first(all.size() - 1)), MathError);
   }
 }

@@ -75,7 +75,8 @@ TEST(RayleighSkyInvariant, ManyDirectionsAtOnceAreTheSameLight) {
       z.push_back(static_cast<float>(d.z));
     }
     std::vector<float> out(x.size() * 4 * 3);
-    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out.data());
+    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out);
+    EXPECT_THROW(sky.radiances({x.size() + 1, x.data(), y.data(), z.data()}, out), MathError);
     double worst = 0, mirrored = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Spectrum one = ask(sky, normalized({x[i], y[i], z[i]}));

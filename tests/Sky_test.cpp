@@ -196,7 +196,8 @@ TEST(SkyIdentity, ManyDirectionsAreAnsweredAsOneByOne) {
        {static_cast<const Sky*>(&uniform), static_cast<const Sky*>(polarized.get())}) {
     const std::size_t bands = sky->grid()->size();
     std::vector<float> many(x.size() * 4 * bands, -1);
-    sky->radiances({x.size(), x.data(), y.data(), z.data()}, many.data());
+    sky->radiances({x.size(), x.data(), y.data(), z.data()}, many);
+    EXPECT_THROW(sky->radiances({x.size() - 1, x.data(), y.data(), z.data()}, many), MathError);
     Spectrum one(sky->grid());
     for (std::size_t i = 0; i < x.size(); ++i) {
       sky->radiance({x[i], y[i], z[i]}, one);

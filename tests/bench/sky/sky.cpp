@@ -89,7 +89,7 @@ static void rayleighManyDirections(benchmark::State& state) {
   }
   std::vector<float> out(512 * 4 * static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
-    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out.data());
+    sky.radiances({x.size(), x.data(), y.data(), z.data()}, out);
     benchmark::ClobberMemory();
   }
   state.counters["directions"] =
