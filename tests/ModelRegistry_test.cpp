@@ -145,10 +145,13 @@ Found swept(const ModelEntry& entry, const Words& words, int draws) {
   }
   return worst;
 }
-// The glossy coating interpolates its transmission in straight lines over the root of the cosine, 128 cells: where Fresnel's
-// transmission is concave upwards (an index of 10 near 60 degrees) the chord lies h^2 T''/8 = 1.0e-5 above it, and as
-// much again, at most, in the mean over all directions.
-constexpr double integration = 2e-5;
+// What straight lines between the nodes of a table may add to the light that returns. The glossy coating's transmission has
+// 128 cells over the root of the cosine: where it is concave upwards (an index of 10 near 60 degrees) the chord lies
+// h^2 T''/8 = 1.0e-5 above it, and in the mean over all directions at most as much again. The body of a paint has nine
+// nodes a direction, and its own tests allow it 1e-4.
+double interpolation(const ModelEntry& entry) {
+  return entry.name == "layered-paint" ? 1e-4 : 2e-5;
+}
 }  // namespace
 
 // Whatever a user may ask for, corners included. What has no parameters but a file is as good as that.
@@ -178,7 +181,7 @@ TEST(ModelsInvariant, EveryPromiseIsKeptWithAllParameters) {
         exchange = std::max(exchange, found.exchange);
       }
       if (t.conserves || among(words, t.conserves_with)) {
-        EXPECT_LT(found.dhr, 1 + integration) << told;
+        EXPECT_LT(found.dhr, 1 + interpolation(entry)) << told;
       } else {
         largest = std::max(largest, found.dhr);
       }
