@@ -249,3 +249,18 @@ TEST(PolarimeterIdentity, AFullWellHoldsNoMore) {
   EXPECT_EQ(readings[1], 20.0);
   EXPECT_LT(readings[2], 20.0);
 }
+
+// Poisson's probabilities summed by hand: a well of as many electrons as come on average is full in 53 % of all readings. One
+// that were full only when more came would be in 44 %.
+TEST(PolarimeterInvariant, AWellIsFullFromItsLastElectronOn) {
+  constexpr double mean = 20;
+  constexpr std::size_t n = 20000;
+  double below = 0, term = std::exp(-mean);
+  for (int k = 0; k < 20; term *= mean / ++k) below += term;
+  std::vector<double> readings(n, 1.0);
+  const auto full = double(addNoise(readings, {mean, 0, mean, 5}));
+  const double error = std::sqrt(below * (1 - below) / n);
+  EXPECT_NEAR(full / n, 1 - below, 5 * error);
+  EXPECT_GT(term, 10 * error) << "negative control: the well's last electron is seen";
+  for (const double r : readings) EXPECT_LE(r, 1.0);
+}

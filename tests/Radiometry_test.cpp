@@ -404,6 +404,62 @@ TEST(RadiometryIdentity, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Radiometry(world, tracer, {}), MathError);
 }
 
+TEST(RadiometryIdentity, RefusesToWriteBeyondTheRoomForTheAnswer) {
+  const SpectralGridPtr two =
+      SpectralGrid::make({CDSpectralLocation(500.0), CDSpectralLocation(600.0)});
+  World world;
+  world.grid = two;
+  world.geometry = GeometryBuilder().build();
+  world.sky =
+      std::make_shared<UniformSky>(CDSpectralVector<CDStokesVector>(two, CDStokesVector(1.0)));
+  const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), {});
+  const Radiometry::Ray up{{}, {0, 0, 1}, {1, 0, 0}};
+  std::array<double, 8> out{};
+  EXPECT_THROW(radiometry.radiance({&up, 1}, std::span(out).first(7)), MathError);
+  EXPECT_NO_THROW(radiometry.radiance({&up, 1}, out));
+  EXPECT_EQ(out[0] + out[1], 2) << "both bands of S0";
+}
+
+namespace {
+/// A sky that shines from one eighth of the azimuths.
+class WedgeSky : public Sky {
+ public:
+  explicit WedgeSky(int eighth) : Sky(one_band), eighth_(eighth) {}
+  void radiance(const CDVector& d, CDSpectralVector<CDStokesVector>& out) const override {
+    out[0] = CDStokesVector(int(d.getAzimuth() / (pi / 4)) % 8 == eighth_ ? 1 : 0);
+  }
+  bool polarized() const override { return false; }
+  std::string description() const override { return "a wedge"; }
+
+ private:
+  int eighth_;
+};
+}  // namespace
+
+// A matt plate sees an eighth of the light of an even sky in each eighth of the azimuths: a turned grid must be turned by
+// every angle alike. The standard error comes from the spread of 4000 turns; a false alarm of eight is one in 200,000.
+TEST(RadiometryInvariant, ATurnedGridLooksAtAllAzimuthsAlike) {
+  World world = worldOf(
+      {{{}, std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(one_band, 1.0))}}, 1);
+  const RadiometryOptions options{.sampling = Sampling::gridRotated, .rays = {7}};
+  Radiometry::Ray ray = looking({0, 0, 0}, {0, 0, 1}, {1, 0, 0});
+  const double all = seen(world, options, ray).getScalar();
+  for (int eighth = 0; eighth < 8; ++eighth) {
+    world.sky = std::make_shared<WedgeSky>(eighth);
+    const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
+    double sum = 0, squares = 0;
+    constexpr int turns = 4000;
+    for (ray.pixel = 0; ray.pixel < turns; ++ray.pixel) {
+      std::array<double, 4> out{};
+      radiometry.radiance({&ray, 1}, out);
+      sum += out[0] / all, squares += out[0] * out[0] / all / all;
+    }
+    const double mean = sum / turns, error = std::sqrt((squares / turns - mean * mean) / turns);
+    EXPECT_NEAR(mean, 1.0 / 8, 5 * error) << eighth;
+    EXPECT_LT(5 * error, 0.1 / 8) << "negative control: a tenth of an eighth would be seen";
+  }
+}
+
 // ---- a polarised sky: the sum written out in double precision, frames turned by angles
 namespace {
 /// A Rayleigh sky on the test's band; `sign` -1 turns its S2 round.

@@ -306,6 +306,18 @@ TEST(GeometryIdentity, NormalsMoreThanADegreeOffAreCounted) {
   EXPECT_EQ(ignored(180, "1//-2 2//-1 3//-3 4"), 1u);
 }
 
+// The normal of an arrowhead is that of its area, 1/2, though most of it lies on the other side of its first edge.
+TEST(GeometryIdentity, NormalsOfAnArrowheadAreComparedWithThatOfItsArea) {
+  const auto ignored = [](int z) {
+    return parsed(fmt::format("v 0 2 0\nv 1.5 1 0\nv 0 0 0\nv 2 1 0\nvn 0 0 {}\n"
+                              "f 1//1 2//1 3//1 4//1\n",
+                              z))
+        .ignored_normals;
+  };
+  EXPECT_EQ(ignored(1), 0u);
+  EXPECT_EQ(ignored(-1), 4u) << "negative control: the other side";
+}
+
 // A corner that is a hair inside is one within rounding, and the first corner stays the tip.
 TEST(GeometryIdentity, AConvexPolygonIsCutFromItsFirstCorner) {
   const Mesh mesh = parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n");

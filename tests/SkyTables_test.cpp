@@ -169,6 +169,9 @@ TEST(SkyTablesInvariant, RefusesWithASentence) {
   const std::string good = measured(300, SkyConvention::malus);
   EXPECT_EQ(messageOf(good), "");
   EXPECT_NE(messageOf(measured(300, SkyConvention::malus, 60)).find("hole"), std::string::npos);
+  EXPECT_EQ(messageOf(good + "45,123,500,0,0,0\n"), "") << "a dark place is none to refuse";
+  EXPECT_NE(messageOf(good + "45,123,500,-1e-9,0,0\n").find("must not be negative"),
+            std::string::npos);
   std::string layout = good;
   layout.replace(layout.find("scattered"), 9, "anywhere");
   EXPECT_NE(messageOf(layout).find("scattered"), std::string::npos);

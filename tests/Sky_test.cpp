@@ -221,6 +221,26 @@ TEST(SkyIdentity, ATableWithoutPolarisationIsAnUnpolarisedSky) {
   EXPECT_FALSE(ask(*sky, up).isPolarized());
 }
 
+// Polarisation is not known at 400 nm: it is lost between there and 600 nm, and at 600 nm, a wavelength of the table, it is not.
+TEST(SkyIdentity, PolarisationIsKnownFromTheFirstKnownWavelengthOn) {
+  std::string text = "# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0,S1,S2,S3\n";
+  for (const char* zenith : {"0", "90"}) {
+    text += fmt::format("{},0,400,2,,,\n", zenith);
+    for (const char* nm : {"600", "800"})
+      text += fmt::format("{},0,{},2,0.5,0.25,0.125\n", zenith, nm);
+  }
+  const CDVector d = compassDirection(45 * degree, 0);
+  const CDStokesVector known(2, 0.5, 0.25, 0.125);
+  for (const double nm : {600.0, 700.0, 800.0}) {
+    EXPECT_LT(distance(ask(*skyOf(text, nm), d), known), 1e-12) << nm;
+    EXPECT_EQ(skyOf(text, nm)->polarization().bands, std::vector<bool>{true}) << nm;
+  }
+  for (const double nm : {400.0, 500.0}) {
+    EXPECT_LT(distance(ask(*skyOf(text, nm), d), CDStokesVector(2)), 1e-12) << nm;
+    EXPECT_EQ(skyOf(text, nm)->polarization().bands, std::vector<bool>{false}) << nm;
+  }
+}
+
 TEST(SkyInvariant, RefusesWithASentence) {
   const std::string good = written(SkyConvention::malus, 1, 30);
   EXPECT_EQ(messageOf(good), "");
@@ -239,6 +259,8 @@ TEST(SkyInvariant, RefusesWithASentence) {
             std::string::npos);
   EXPECT_NE(messageOf(good + "60,90,600,1,0,0,0\n").find("repeats"), std::string::npos);
   EXPECT_NE(messageOf(good, 700).find("does not cover the band at 700 nm"), std::string::npos);
+  EXPECT_NE(messageOf(good + "180.5,0,600,1,0,0,0\n").find("must be 0 to 180"),
+            std::string::npos);
   EXPECT_NE(messageOf(good + "60,95,600,-1,0,0,0\n").find("no row"), std::string::npos);
   EXPECT_NE(
       messageOf("# convention: malus\nzenith_deg,azimuth_deg,wavelength_nm,S0\n").find("empty"),
@@ -310,6 +332,36 @@ TEST(SkyInvariant, ABrightPartIsDrawnMoreOften) {
   EXPECT_NEAR(flux, pi / 9 + 0.02 * pi, 0.01);  // half of 4 pi/(2*9) and the constant
   EXPECT_NEAR(uniform, flux, 0.01);
   EXPECT_LT(squares - flux * flux, 0.05 * (uniform_squares - uniform * uniform));
+}
+
+// The chapter's 32 zones by 64 sectors: in the middle of a cell the density is a twentieth of the even one and, of the rest, the
+// brightness there over the mean brightness, here 3/2. Corners of a cell are half a zone and half a sector away, so that their
+// mean differs by second derivatives times squares of these steps, 2e-3 in all below a zenith angle of 30 degrees.
+TEST(SkyIdentity, ACellIsDrawnAsOftenAsItIsBright) {
+  const auto brightness = [](const CDVector& d) {
+    return 1 + d.z + 0.5 * d.x + 0.3 * d.y * d.z;
+  };
+  const HemisphereDistribution drawn(brightness);
+  const auto middle = [](int zone, int sector) {
+    return CDVector::fromAngles(std::acos((zone + 0.5) / 32), 2 * pi * (sector + 0.5) / 64);
+  };
+  double worst = 0, control = 0;
+  for (int zone = 0; zone < 28; ++zone)
+    for (int sector = 0; sector < 64; ++sector) {
+      const double density = drawn.density(middle(zone, sector)) * 2 * pi;
+      const auto expected = [&](int of) {
+        return 0.05 + 0.95 * brightness(middle(zone, of)) / 1.5;
+      };
+      worst = std::max(worst, std::abs(density - expected(sector)));
+      control = std::max(control, std::abs(density - expected(sector + 1)));
+    }
+  EXPECT_LT(worst, 2e-3);
+  EXPECT_GT(control, 1e-2) << "negative control: the next sector's brightness";
+  // up to the zenith the drawn direction's density is that of its cell
+  for (int i = 0; i < 1000; ++i) {
+    const Sky::Sample sample = drawn.sample((i + 0.5) / 1000, std::fmod(i * 0.618, 1.0));
+    EXPECT_NEAR(sample.density / drawn.density(sample.to_sky), 1, 1e-12) << i;
+  }
 }
 
 TEST(SkyInvariant, ABlackSkyIsDrawnEvenly) {

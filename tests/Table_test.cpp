@@ -98,6 +98,14 @@ TEST(TableIdentity, AFaultIsNamedByLineAndColumn) {
             "theta_deg, n");
 }
 
+TEST(TableIdentity, ASignIsNoNumber) {
+  for (const std::string word : {"+", "-", "+-1", "++1", "."})
+    EXPECT_EQ(
+        complaint("a\n" + word + "\n", "a"),
+        "t.csv:2: a = " + word + ": is not a number; write a number such as 0.2 or 1.5e-3");
+  EXPECT_EQ(parsed("a\n+.5\n").number(0, "a"), 0.5);
+}
+
 TEST(TableIdentity, AMissingFileAndADirectoryCannotBeOpened) {
   EXPECT_THROW(Table::read("no/such/file.csv"), InputError);
   EXPECT_THROW(Table::read(std::filesystem::temp_directory_path()), InputError);
@@ -130,6 +138,8 @@ TEST(TableInvariant, ASealedTableIsReadAndAChangedOneIsNot) {
   EXPECT_NE(sealed.find("# rows: 2\n"), std::string::npos);
   EXPECT_EQ(complaint(sealed), "");
   EXPECT_EQ(sealTable(sealed, "t.csv"), sealed);
+  EXPECT_TRUE(sealed.starts_with("# title: Copper\n# source: a handbook,\n#   page 12-95\n"));
+  EXPECT_TRUE(sealed.ends_with(copper.substr(copper.find("wavelength_nm"))));
   std::string windows;
   for (const char letter : sealed) windows += letter == '\n' ? "\r\n" : std::string(1, letter);
   EXPECT_EQ(complaint(windows), "");

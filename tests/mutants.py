@@ -18,10 +18,11 @@ fault chosen. A test that fails, crashes,
 or takes more than ten times its processor time, has noticed the fault.
 
 FILE.csv is a line a fault, written as the outcomes come; a run that was ended goes on from it.
-With --again only the faults that survived there are tried, with the tests as they are now.
+With --again only the faults that survived there are tried, with the tests as they are now; the
+outcome that they had at first stays beside the new one.
 tests/mutants-excused.csv lists changes that no test can notice (equivalent code, speed alone), one
-by one with the reason, by the text of the line; they are not counted. An excuse for a change that
-cannot be made any more is an error.
+by one with the reason, by chapter and text of the line; they are not counted. An excuse for a change
+that cannot be made any more is an error.
 """
 import argparse
 import concurrent.futures
@@ -201,9 +202,9 @@ class Fault:
         lines[self.index] = line[:self.column] + self.new + line[self.column + len(self.old):]
         return "\n".join(lines)
 
-    def key(self) -> tuple[str, str]:
-        """What finds the fault again after lines have moved and chapters have new names."""
-        return self.text, self.change
+    def key(self) -> tuple[str, str, str]:
+        """What finds the fault again after lines have moved."""
+        return self.chapter, self.text, self.change
 
 
 Span = tuple[int, int, int, int]  # of an expression, and of the token in it
@@ -279,13 +280,13 @@ def switched(path: pathlib.Path, numbers: dict[int, Fault]) -> tuple[str, list[i
 
 
 def numbered(faults: list[Fault]) -> list[Fault]:
-    """A second equal change of one line says that it is the second."""
-    seen: dict[tuple[pathlib.Path, int, str], int] = {}
+    """Equal changes of a line, or of equal lines of a chapter, are told apart: the second one says that it is the second."""
+    seen: dict[tuple[str, str, str], int] = {}
     for fault in faults:
-        place = fault.path, fault.index, fault.change
-        seen[place] = seen.get(place, 0) + 1
-        if seen[place] > 1:
-            fault.change += f" ({seen[place]})"
+        key = fault.key()
+        seen[key] = seen.get(key, 0) + 1
+        if seen[key] > 1:
+            fault.change += f" ({seen[key]})"
     return faults
 
 
@@ -319,7 +320,7 @@ def faults_of(chapter: str, path: pathlib.Path) -> list[Fault]:
                     continue  # a pointer
                 new = SWAPS[old]
             found.append(Fault(chapter, path, index, token.start(), token.lastgroup or "", old, new, f"{place}:{here}", line))
-    return numbered(found)
+    return found
 
 
 def code_lines(path: pathlib.Path) -> int:
@@ -351,14 +352,17 @@ class Build:
     @staticmethod
     def lean(words: list[str]) -> list[str]:
         """The compiler's line without launcher, output and warnings as errors, at the optimisation that compiles fast,
-        and with the checks of indices that make sanitize makes as well."""
+        and with the checks of indices that make sanitize makes as well. Chapters become a part of a program, as the tests are,
+        because a precompiled header serves only who is compiled like it."""
         if words[0].endswith("ccache"):
             words = words[1:]
         output = words.index("-o")
         words = words[:output] + words[output + 2:]
         source = words.index("-c")
         words = words[:source] + words[source + 2:]
-        return [w for w in words if not w.startswith("-W")] + ["-O1", "-g0", "-Wno-narrowing", "-Werror=vla", "-D_GLIBCXX_ASSERTIONS"]
+        words = [w for w in words if not w.startswith(("-W", "-fPI", "-DGTEST_"))]
+        checks = ["-UNDEBUG", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds", "-fsanitize-undefined-trap-on-error"]
+        return words + ["-fPIE", "-DGTEST_HAS_PTHREAD=1", "-O1", "-g0", "-Wno-narrowing", "-Werror=vla"] + checks
 
     def precompile(self) -> list[str]:
         """The foreign headers of all chapters and tests, compiled once: half of the time of a faulty file."""
@@ -491,9 +495,9 @@ class Trial:
         own = {file: text for file, text in texts.items() if text != file.read_text()}
         header = next((file for file in own if file.suffix == ".hpp"), None)
         if header:
-            folder = scratch / "include" / self.chapter.split("/")[0]
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / header.name).write_text(own[header])
+            faulty = scratch / "include" / header.relative_to(ROOT / "generated")  # as #include names it
+            faulty.parent.mkdir(parents=True, exist_ok=True)
+            faulty.write_text(own[header])
             include += ["-I", str(scratch / "include")]
         sources = [(file, text) for file, text in texts.items() if file.suffix == ".cpp"]
         sources += [(test, test.read_text()) for test in self.tests if header]
@@ -552,34 +556,34 @@ class Trial:
 
 
 def shares(weights: dict[str, int], count: int) -> dict[str, int]:
-    """Whole numbers in proportion to the weights, at least one each; the largest remainders get what is left."""
+    """Whole numbers in proportion to the weights, at least one each but for nothing; the largest remainders get what is left."""
     total = sum(weights.values())
     exact = {name: count * weight / total for name, weight in weights.items()}
-    share = {name: max(1, int(x)) for name, x in exact.items()}
+    share = {name: max(1, int(x)) if x else 0 for name, x in exact.items()}
     for name in sorted(exact, key=lambda name: share[name] - exact[name])[:max(0, count - sum(share.values()))]:
         share[name] += 1
     return share
 
 
-def excuses(candidates: dict[str, list[Fault]]) -> dict[tuple[str, str], str]:
-    """{(line, change): reason}; each of them is of a change that can be made."""
+def excuses(candidates: dict[str, list[Fault]]) -> dict[tuple[str, str, str], str]:
+    """{(chapter, line, change): reason}; each of them is of a change that can be made."""
     if not EXCUSED.exists():
         return {}
     with open(EXCUSED, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     known = {fault.key() for faults in candidates.values() for fault in faults}
     for row in rows:
-        if (row["line"], row["change"]) not in known:
-            sys.exit(f"{EXCUSED}: no line of any chapter is '{row['line']}' with the change {row['change']}; remove the excuse")
+        if (row["chapter"], row["line"], row["change"]) not in known:
+            sys.exit(f"{EXCUSED}: no line of {row['chapter']} is '{row['line']}' with the change {row['change']}; remove the excuse")
         if not row["reason"]:
             sys.exit(f"{EXCUSED}: no reason is given for '{row['line']}'")
-    return {(row["line"], row["change"]): row["reason"] for row in rows}
+    return {(row["chapter"], row["line"], row["change"]): row["reason"] for row in rows}
 
 
 class Report:
     """A line a fault, written as the outcomes come."""
 
-    COLUMNS = ["chapter", "place", "line", "change", "outcome"]
+    COLUMNS = ["chapter", "place", "line", "change", "at_first", "outcome"]  # at_first: before tests were added for it
 
     def __init__(self, path: str | None, seed: int) -> None:
         self.path, self.seed, self.lock = pathlib.Path(path) if path else None, seed, threading.Lock()
@@ -590,13 +594,14 @@ class Report:
                     self.rows[row["chapter"], row["line"], row["change"]] = row
 
     def outcome(self, fault: Fault) -> str | None:
-        row = self.rows.get((fault.chapter, fault.text, fault.change))
+        row = self.rows.get(fault.key())
         return row["outcome"] if row else None
 
     def add(self, fault: Fault, outcome: str) -> None:
         with self.lock:
-            row = dict(zip(self.COLUMNS, [fault.chapter, fault.place, fault.text, fault.change, outcome]))
-            self.rows[fault.chapter, fault.text, fault.change] = row
+            first = self.rows.get(fault.key(), {"at_first": outcome})["at_first"]
+            row = dict(zip(self.COLUMNS, [fault.chapter, fault.place, fault.text, fault.change, first, outcome]))
+            self.rows[fault.key()] = row
             if not self.path:
                 return
             fresh = not self.path.exists()
@@ -613,15 +618,15 @@ class Report:
         csv.writer(file, lineterminator="\n").writerow(self.COLUMNS)
 
     def finish(self, faults: list[Fault]) -> None:
-        """The faults that count and the excused ones alone, in the order of the chapters."""
+        """The faults that count and the excused ones alone."""
         if self.path:
             with open(self.path, "w", encoding="utf-8", newline="") as file:
                 self.head(file)
                 for fault in faults:
-                    csv.DictWriter(file, self.COLUMNS, lineterminator="\n").writerow(self.rows[fault.chapter, fault.text, fault.change])
+                    csv.DictWriter(file, self.COLUMNS, lineterminator="\n").writerow(self.rows[fault.key()])
 
 
-def tried(trial: Trial, wanted: int, pool: list[Fault], report: Report, excused: dict[tuple[str, str], str],
+def tried(trial: Trial, wanted: int, pool: list[Fault], report: Report, excused: dict[tuple[str, str, str], str],
           again: bool) -> list[Fault]:
     """Try faults of the pool until the wanted number counts; those that have an outcome already are taken as they are."""
 
@@ -676,12 +681,13 @@ def main() -> None:
         sys.exit(f"no test names the chapter {untested[0]} in its first comment; add // ... (nw/{untested[0]}.nw)")
     for chapter in chapters:
         files = [ROOT / "generated" / "malus" / f"{chapter}{suffix}" for suffix in (".hpp", ".cpp")]
-        candidates[chapter] = [fault for file in files if file.exists() for fault in faults_of(chapter, file)]
+        candidates[chapter] = numbered([fault for file in files if file.exists() for fault in faults_of(chapter, file)])
         random.Random(f"{given.seed} {chapter}").shuffle(candidates[chapter])
-        weights[chapter] = sum(map(code_lines, files))
+        weights[chapter] = sum(map(code_lines, files)) if candidates[chapter] else 0
     excused, report = excuses(candidates), Report(given.report, given.seed)
     share = shares(weights, given.count)
-    todo = [c for c in chapters if not given.chapter or c in given.chapter]
+    todo = [c for c in chapters if share[c] and (not given.chapter or c in given.chapter)]
+    random.Random(given.seed).shuffle(todo)  # so that a run that was ended has seen all floors
     results: list[Fault] = []
 
     def try_chapter(chapter: str) -> list[Fault]:
@@ -694,7 +700,7 @@ def main() -> None:
             print(f"{chapter:32} {sum(report.outcome(f) == 'noticed' for f in counted):3} of {len(counted):3} noticed", flush=True)
             results += done
     if not given.chapter:
-        report.finish(results)
+        report.finish(sorted(results, key=lambda fault: (chapters.index(fault.chapter), int(fault.place.rpartition(":")[2]))))
     counted = [f for f in results if report.outcome(f) != "excused"]
     noticed = sum(report.outcome(f) == "noticed" for f in counted)
     print(f"{noticed} of {len(counted)} faults noticed, {100 * noticed / max(1, len(counted)):.1f} %; {len(results) - len(counted)} excused")
