@@ -443,7 +443,8 @@ TEST(MeasuredBRDFIdentity, BrokenTextIsRefused) {
         {"0,0,0,550,1\n0,0,90,550,1\n", "phi_d: leaves out more than 120 deg of the circle"},
         {"0,0,0,550,1\n1,1,100,551,1\n2,2,200,552,1\n3,3,300,553,1\n",
          "4 rows: do not form a grid, which would have 4 x 4 x 4 x 4"}}) {
-    const std::string message = refusal([&] { from(scratch, head + rows); });
+    const std::string text = head + rows;
+    const std::string message = refusal([&] { from(scratch, text); });
     EXPECT_NE(message.find(problem), std::string::npos) << message;
   }
   EXPECT_NE(refusal([&] {

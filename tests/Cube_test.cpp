@@ -232,18 +232,18 @@ TEST(ImageIdentity, BadCubesAreNamed) {
 // One wavelength a line, as many programs write them; each line is looked at once.
 TEST(ImageIdentity, AHeaderOfManyLinesIsRead) {
   const Scratch scratch;
-  constexpr int bands = 100'000;
+  constexpr int wavelengths = 100'000;
   std::string text = fmt::format(
       "ENVI\nsamples = 1\nlines = 1\nbands = {}\ndata type = 4\ninterleave = bip\nbyte order = "
       "0\n"
       "wavelength = {{\n",
-      bands);
-  for (int i = 0; i < bands; ++i)
-    text += fmt::format("{}{}\n", 400 + i * 0.01, i + 1 < bands ? "," : "}");
-  put(scratch / "x.img", std::string(4 * bands, '\0'));
+      wavelengths);
+  for (int i = 0; i < wavelengths; ++i)
+    text += fmt::format("{}{}\n", 400 + i * 0.01, i + 1 < wavelengths ? "," : "}");
+  put(scratch / "x.img", std::string(4 * wavelengths, '\0'));
   put(scratch / "x.img.hdr", text);
   const Cube cube = readCube(scratch / "x.img");
-  ASSERT_EQ(cube.header.wavelength_nm.size(), std::size_t{bands});
+  ASSERT_EQ(cube.header.wavelength_nm.size(), std::size_t{wavelengths});
   EXPECT_DOUBLE_EQ(cube.header.wavelength_nm[4711], 400 + 4711 * 0.01);
 }
 

@@ -18,19 +18,6 @@ using namespace malus::testing;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-using Model = std::shared_ptr<const CDBRDFModel>;
-
-Model matt(double reflectance) {
-  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
-}
-Model facets(double n, double k, double sigma, DiffuseTerm diffuse = DiffuseTerm::none) {
-  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
-  return std::make_shared<BRDFTorranceSparrow>(all(n), all(k), all(sigma),
-                                               TorranceSparrowOptions{.diffuse = diffuse});
-}
-Quad floorOf(const Model& model, double half = 1) {
-  return {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model};
-}
 World plate(const Model& model) { return worldOf({floorOf(model)}, uniformSky(1)); }
 
 // As bright everywhere as the uniform sky, without saying so: sampling by the sky's density has its turn.
@@ -71,32 +58,6 @@ std::uint64_t pixelsFor(int rays) {
   return std::max<std::uint64_t>(16, 40000 / static_cast<std::uint64_t>(rays - 1));
 }
 const Radiometry::Ray aslant = looking({0.1, 0.2, 0}, {0.5, 0.2, 1}, {0, 1, 0});
-
-// Inside of a globe, radius 1, whose cap above the opening is missing: all form factors are areas.
-World globe(double opening_rad, const Model& model) {
-  constexpr std::uint32_t rows = 60, columns = 120;
-  Mesh mesh;
-  mesh.facets = mesh.materials = {"globe"};
-  for (std::uint32_t i = 0; i <= rows; ++i)
-    for (std::uint32_t j = 0; j < columns; ++j)
-      mesh.vertices.push_back(CDVector::fromAngles(opening_rad + (pi - opening_rad) * i / rows,
-                                                   2 * pi * j / columns));
-  for (std::uint32_t i = 0; i < rows; ++i)
-    for (std::uint32_t j = 0; j < columns; ++j) {
-      const std::uint32_t a = i * columns + j, b = i * columns + (j + 1) % columns;
-      mesh.triangles.push_back({a, b + columns, a + columns, 0, 0});
-      mesh.triangles.push_back({a, b, b + columns, 0, 0});
-    }
-  GeometryBuilder builder;
-  builder.addMesh(mesh, {});
-  World world;
-  world.grid = oneBand();
-  world.geometry = std::move(builder).build();
-  world.materials = {{"globe", model}};
-  world.sky = uniformSky(1);
-  return world;
-}
-const Radiometry::Ray into = looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0});
 
 bool reported(const World& world, const RadiometryOptions& options) {
   return trySampling(world, options).all_bounces > SamplingTrial::most_bias;
@@ -164,7 +125,7 @@ TEST(FurnaceInvariant, AHollowReturnsWhatItMustReflectionByReflection) {
       left *= 1 - share;
       RadiometryOptions options = candidate.options;
       options.rays.assign(m, 2), options.rays[0] = 33;
-      const Estimate seen = estimate(world, options, into, 400);
+      const Estimate seen = estimate(world, options, intoGlobe(), 400);
       EXPECT_NEAR(seen.mean[0], 1 - left, 5 * seen.error[0] + 2e-3) << candidate.name << m;
       if (m <= 3) {
         EXPECT_GT(std::abs(seen.mean[0] - 1 + left * (1 - share)), 5 * seen.error[0] + 2e-3)

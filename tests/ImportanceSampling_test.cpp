@@ -17,14 +17,7 @@ using namespace malus::testing;
 namespace {
 constexpr double pi = std::numbers::pi;
 
-std::shared_ptr<const CDBRDFModel> copper(double sigma) {
-  return std::make_shared<BRDFTorranceSparrow>(CDSpectralVector<double>(oneBand(), 0.405),
-                                               CDSpectralVector<double>(oneBand(), 2.95),
-                                               CDSpectralVector<double>(oneBand(), sigma));
-}
-std::shared_ptr<const CDBRDFModel> matt(double reflectance) {
-  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
-}
+Model copper(double sigma) { return facets(0.405, 2.95, sigma, DiffuseTerm::thesis); }
 
 // Copper whose density claims three per cent too much.
 class WrongDensity : public BRDFTorranceSparrow {

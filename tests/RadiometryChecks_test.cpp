@@ -21,19 +21,9 @@ using namespace malus::testing;
 
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-using Model = std::shared_ptr<const CDBRDFModel>;
-
-Model matt(double reflectance) {
-  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
-}
-Model metal(double n, double sigma, DiffuseTerm diffuse) {
-  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
-  return std::make_shared<BRDFTorranceSparrow>(all(n), all(2.95), all(sigma),
-                                               TorranceSparrowOptions{.diffuse = diffuse});
-}
-Model copper(double sigma, DiffuseTerm diffuse) { return metal(0.405, sigma, diffuse); }
+Model copper(double sigma, DiffuseTerm diffuse) { return facets(0.405, 2.95, sigma, diffuse); }
 // A metal whose index is purely imaginary reflects everything at any angle.
-Model lossless(double sigma) { return metal(0, sigma, DiffuseTerm::thesis); }
+Model lossless(double sigma) { return facets(0, 2.95, sigma, DiffuseTerm::thesis); }
 
 RadiometryOptions importance(std::vector<int> rays) {
   RadiometryOptions options;
@@ -45,44 +35,6 @@ RadiometryOptions gridOf(int rays) {
   options.sampling = Sampling::grid, options.rays = {rays};
   return options;
 }
-
-std::vector<Quad> plate(const Model& model) {
-  return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, model}};
-}
-
-// A globe of radius 1 whose cap above z = cos(opening) is missing, made of quadrilaterals seen from inside.
-World globe(double opening_rad, const Model& model) {
-  std::vector<Quad> quads;
-  constexpr int rows = 60, columns = 120;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) {
-      const auto corner = [&](int row, int column) {
-        return CDVector::fromAngles(opening_rad + (pi - opening_rad) * row / rows,
-                                    2 * pi * column / columns);
-      };
-      quads.push_back(
-          {corner(i + 1, j), corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), model});
-    }
-  World world;
-  world.grid = oneBand();
-  GeometryBuilder builder;
-  Mesh mesh;
-  mesh.facets = mesh.materials = {"globe"};
-  for (const Quad& q : quads) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const CDVector& corner : {q.a, q.b, q.c, q.d}) mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({first, first + 1, first + 2, 0, 0});
-    mesh.triangles.push_back({first, first + 2, first + 3, 0, 0});
-  }
-  builder.addMesh(mesh, {});
-  world.geometry = std::move(builder).build();
-  world.materials = {{"globe", model}};
-  world.sky = uniformSky(1);
-  return world;
-}
-
-// Seen through the opening: a point of the bottom.
-Radiometry::Ray intoGlobe() { return looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0}); }
 
 // Form factor from a surface element to a parallel rectangle a by b at the height h whose corner stands above
 // it (Siegel and Howell, Thermal Radiation Heat Transfer, configuration factors of elements to rectangles).
@@ -102,9 +54,11 @@ double s0(const World& world, const RadiometryOptions& options, const Radiometry
 TEST(RadiometryChecksInvariant, WhiteFurnaceOfAPlate) {
   for (const double zenith : {0.0, 0.5, 1.2, 1.5}) {
     const auto ray = looking({0.1, 0.2, 0}, CDVector::fromAngles(zenith, 1), {0, 1, 0.3});
-    EXPECT_NEAR(s0(worldOf(plate(matt(1)), uniformSky(2)), importance({200}), ray), 2, 1e-6);
+    EXPECT_NEAR(s0(worldOf({floorOf(matt(1))}, uniformSky(2)), importance({200}), ray), 2,
+                1e-6);
     EXPECT_GT(
-        std::abs(s0(worldOf(plate(matt(0.999)), uniformSky(2)), importance({200}), ray) - 2),
+        std::abs(s0(worldOf({floorOf(matt(0.999))}, uniformSky(2)), importance({200}), ray) -
+                 2),
         1e-3)
         << "negative control: a thousandth of absorption";
   }
@@ -114,8 +68,8 @@ TEST(RadiometryChecksInvariant, WhiteFurnaceOfAPlate) {
 // (pi/2m)^2/6 for m zeniths; 10 zeniths of 400 directions: 0.4 per cent.
 TEST(RadiometryChecksInvariant, WhiteFurnaceOnTheGrid) {
   const auto ray = looking({0.1, 0.2, 0}, {0.5, 0, 1}, {0, 1, 0});
-  EXPECT_NEAR(s0(worldOf(plate(matt(1)), uniformSky(1)), gridOf(401), ray), 1, 5e-3);
-  EXPECT_NEAR(s0(worldOf(plate(matt(1)), uniformSky(1)), gridOf(4001), ray), 1, 5e-4);
+  EXPECT_NEAR(s0(worldOf({floorOf(matt(1))}, uniformSky(1)), gridOf(401), ray), 1, 5e-3);
+  EXPECT_NEAR(s0(worldOf({floorOf(matt(1))}, uniformSky(1)), gridOf(4001), ray), 1, 5e-4);
 }
 
 // The thesis's diffuse term gives back what one reflection by the facets loses behind others: a metal that does not
@@ -124,11 +78,12 @@ TEST(RadiometryChecksInvariant, LosslessMetalIsWhite) {
   for (const double zenith : {0.2, 0.8, 1.3}) {
     const auto ray = looking({0, 0, 0}, CDVector::fromAngles(zenith, 1), {0, 1, 0});
     const auto measured =
-        estimate(worldOf(plate(lossless(0.2)), uniformSky(1)), importance({257}), ray, 200);
+        estimate(worldOf({floorOf(lossless(0.2))}, uniformSky(1)), importance({257}), ray, 200);
     // 5 standard errors, and the tabulated remainder's interpolation
     EXPECT_NEAR(measured.mean[0], 1, 5 * measured.error[0] + 1e-4) << zenith;
-    const double absorbing = s0(worldOf(plate(copper(0.2, DiffuseTerm::none)), uniformSky(1)),
-                                importance({257}), ray, 200);
+    const double absorbing =
+        s0(worldOf({floorOf(copper(0.2, DiffuseTerm::none))}, uniformSky(1)), importance({257}),
+           ray, 200);
     EXPECT_LT(absorbing, 0.95) << "negative control";
   }
 }
@@ -139,7 +94,7 @@ TEST(RadiometryChecksIdentity, PlateUnderAUniformSkyShowsItsReflectance) {
   const Model model = copper(0.2, DiffuseTerm::reciprocal);
   for (const double zenith : {0.2, 0.8, 1.2}) {
     const auto measured =
-        estimate(worldOf(plate(model), uniformSky(1)), importance({257}),
+        estimate(worldOf({floorOf(model)}, uniformSky(1)), importance({257}),
                  looking({0, 0, 0}, CDVector::fromAngles(zenith, 1), {0, 1, 0}), 300);
     const double expected = std::as_const(model)->getDHR(zenith).at(0);
     EXPECT_NEAR(measured.mean[0], expected, 5 * measured.error[0] + 1e-4) << zenith;
@@ -183,7 +138,7 @@ TEST(RadiometryChecksInvariant, NothingLeaksIntoAClosedBox) {
 // A black ceiling over a matt floor hides its form factor of the sky.
 TEST(RadiometryChecksPublished, CeilingHidesItsFormFactor) {
   for (const double height : {0.5, 1.0, 3.0}) {
-    auto quads = plate(matt(0.7));
+    std::vector<Quad> quads{floorOf(matt(0.7))};
     quads.push_back(
         {{-1, -1, height}, {-1, 1, height}, {1, 1, height}, {1, -1, height}, matt(0)});
     const double x = 0.3, y = -0.2;
@@ -243,7 +198,7 @@ TEST(RadiometryChecksInvariant, MetalCavityGivesBackAllEnergy) {
 // The irradiance on an image plane behind a pinhole is the sum over the pixels of radiance times cos^4/f^2, and under
 // a uniform sky it is pi times the form factor of the plane's window. Midpoints: relative error of 1/N^2.
 TEST(RadiometryChecksPublished, ImagePlaneUnderAUniformSky) {
-  const World world = worldOf(plate(matt(0)), uniformSky(1));
+  const World world = worldOf({floorOf(matt(0))}, uniformSky(1));
   SensorGeometry geometry;
   geometry.width = geometry.height = 100;
   geometry.focal_length_px = 40, geometry.principal_x = 50, geometry.principal_y = 50;
@@ -286,7 +241,7 @@ TEST(RadiometryChecksIdentity, PlateIsWhatTheProgramPrints) {
   const Table printed = Table::parse(stream, "answer");
   ASSERT_EQ(printed.rows(), 100u);
   for (std::size_t i = 0; i < 100; ++i) {
-    World world = worldOf(plate(copper(0.2, DiffuseTerm::thesis)));
+    World world = worldOf({floorOf(copper(0.2, DiffuseTerm::thesis))});
     const double azimuth = 1, cos_i = std::cos(angles[i][0] * degree);
     world.sun.emplace(
         Sun{CDVector::fromAngles(angles[i][0] * degree, azimuth), spectrumOf(1), 0});

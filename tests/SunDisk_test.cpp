@@ -18,26 +18,13 @@ using namespace malus::testing;
 namespace {
 constexpr double pi = std::numbers::pi, degree = pi / 180;
 constexpr double alpha = solar_half_angle_rad;
-using Model = std::shared_ptr<const CDBRDFModel>;
-
-Model matt(double reflectance) {
-  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
-}
-Model facets(double n, double k, double sigma) {
-  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
-  return std::make_shared<BRDFTorranceSparrow>(
-      all(n), all(k), all(sigma), TorranceSparrowOptions{.diffuse = DiffuseTerm::none});
-}
-
 RadiometryOptions rays(Sampling sampling, std::vector<int> counts) {
   RadiometryOptions options;
   options.sampling = sampling, options.rays = std::move(counts);
   return options;
 }
 
-std::vector<Quad> plate(const Model& model, double half = 50) {
-  return {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model}};
-}
+std::vector<Quad> plate(const Model& model, double half = 50) { return {floorOf(model, half)}; }
 
 World sunlit(World world, const CDVector& to_sun, double half_angle_rad = alpha,
              const CDStokesVector& irradiance = 1.0) {

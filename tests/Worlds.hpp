@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "malus/render/Radiometry.hpp"
 #include "malus/scene/SceneGeometry.hpp"
 #include "malus/scene/World.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 
 namespace malus::testing {
 inline const SpectralGridPtr& oneBand() {
@@ -19,6 +22,17 @@ inline const SpectralGridPtr& oneBand() {
 
 inline CDSpectralVector<CDStokesVector> spectrumOf(const CDStokesVector& value) {
   return CDSpectralVector<CDStokesVector>(oneBand(), value);
+}
+
+using Model = std::shared_ptr<const CDBRDFModel>;
+
+inline Model matt(double reflectance) {
+  return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(oneBand(), reflectance));
+}
+inline Model facets(double n, double k, double sigma, DiffuseTerm diffuse = DiffuseTerm::none) {
+  const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
+  return std::make_shared<BRDFTorranceSparrow>(all(n), all(k), all(sigma),
+                                               TorranceSparrowOptions{.diffuse = diffuse});
 }
 
 // Quadrilaterals abcd, counter-clockwise seen from outside; facet and material "0", "1", ...
@@ -48,6 +62,37 @@ inline std::shared_ptr<const Sky> uniformSky(double radiance) {
   return std::make_shared<UniformSky>(spectrumOf(radiance));
 }
 
+// A square on the ground.
+inline Quad floorOf(const Model& model, double half = 1) {
+  return {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}, model};
+}
+
+// Inside of a globe, radius 1, whose cap above the opening is missing: all form factors are areas.
+inline World globe(double opening_rad, const Model& model) {
+  constexpr std::uint32_t rows = 60, columns = 120;
+  Mesh mesh;
+  mesh.facets = mesh.materials = {"globe"};
+  for (std::uint32_t i = 0; i <= rows; ++i)
+    for (std::uint32_t j = 0; j < columns; ++j)
+      mesh.vertices.push_back(
+          CDVector::fromAngles(opening_rad + (std::numbers::pi - opening_rad) * i / rows,
+                               2 * std::numbers::pi * j / columns));
+  for (std::uint32_t i = 0; i < rows; ++i)
+    for (std::uint32_t j = 0; j < columns; ++j) {
+      const std::uint32_t a = i * columns + j, b = i * columns + (j + 1) % columns;
+      mesh.triangles.push_back({a, b + columns, a + columns, 0, 0});
+      mesh.triangles.push_back({a, b, b + columns, 0, 0});
+    }
+  GeometryBuilder builder;
+  builder.addMesh(mesh, {});
+  World world;
+  world.grid = oneBand();
+  world.geometry = std::move(builder).build();
+  world.materials = {{"globe", model}};
+  world.sky = uniformSky(1);
+  return world;
+}
+
 // The box [low, high]^3 with normals inwards: bottom, top, west, east, south, north.
 inline std::vector<Quad> boxOf(const std::array<std::shared_ptr<const CDBRDFModel>, 6>& brdf,
                                double low = -1, double high = 1) {
@@ -66,6 +111,11 @@ inline Radiometry::Ray looking(const CDVector& at, const CDVector& to_viewer,
                                double distance = 5) {
   const CDVector d = normalized(to_viewer);
   return {at + d * distance, -d, horizontal, pixel, 0, 0};
+}
+
+// Through the opening of the globe: a point of its bottom.
+inline Radiometry::Ray intoGlobe() {
+  return looking({0.3, 0.1, -0.9}, {0.1, 0.2, 1}, {1, 0, 0});
 }
 
 // Mean of each Stokes component over `pixels` keys, and the standard error of that mean.
