@@ -201,6 +201,37 @@ TEST(MeasuredBRDFIdentity, FilesGoRoundTrip) {
   EXPECT_GT(apart(own(tabulate(metal(0.31), 6)), own(table), 1.5), 1e-3);  // negative control
 }
 
+// The chapter's own example: nodes at 0, 10 and 30 (here hundredths of a radian, so that a period may be short). Without a
+// period there is nothing beyond the ends; with one, 40 lies half way in the gap from 30 to 50.
+TEST(MeasuredBRDFIdentity, AnAxisIsClosedByItsPeriodWhateverThatIs) {
+  const TableAxis open{{0, 0.1, 0.3}, 0, 0.3, 0}, closed{{0, 0.1, 0.3}, 0, 0, 0.5};
+  const auto is = [](const TableAxis::Cell& cell, std::size_t lower, std::size_t upper,
+                     double share) {
+    return cell.lower == lower && cell.upper == upper && std::abs(cell.share - share) < 1e-12;
+  };
+  EXPECT_TRUE(is(open.find(0.15), 1, 2, 0.25));
+  EXPECT_TRUE(is(open.find(0.4), 2, 2, 0));
+  EXPECT_TRUE(is(closed.find(0.15), 1, 2, 0.25));
+  for (const double turns : {-2, 0, 3}) {
+    EXPECT_TRUE(is(closed.find(0.4 + 0.5 * turns), 2, 0, 0.5)) << turns;
+    EXPECT_TRUE(closed.covers(0.4 + 0.5 * turns));
+  }
+  EXPECT_TRUE(open.covers(0.3));
+  EXPECT_FALSE(open.covers(0.31));  // negative control
+  EXPECT_FALSE(open.covers(-0.01));
+}
+
+// The float before half of pi is what a file has where 90 degrees were meant; light along the surface is then known, too.
+TEST(MeasuredBRDFIdentity, AQuarterTurnInSinglePrecisionIsAQuarterTurn) {
+  const Scratch scratch;
+  MuellerTable table = tabulate(metal(), 4);
+  table.theta_h.nodes.back() = std::nextafter(float(pi / 2), 0.0f);
+  ASSERT_LT(table.theta_h.nodes.back(), pi / 2);
+  EXPECT_TRUE(from(scratch, tensorFile(table)).theta_h.covers(pi / 2));
+  table.theta_h.nodes.back() = 89.9 * degree;  // negative control: a table that ends earlier
+  EXPECT_FALSE(from(scratch, tensorFile(table)).theta_h.covers(pi / 2));
+}
+
 // The layout as the chapter describes it, laid down by hand: one matrix, f23 and f32 with the other handedness.
 TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
   const Scratch scratch;
@@ -390,6 +421,16 @@ TEST(MeasuredBRDFInvariant, AModelThroughMERLAndBack) {
       const double f = model.getBRDF(a.there()).at(band).getScalar();
       ASSERT_NEAR(back.getBRDF(a.there()).at(band).getScalar(), f, 0.02 * (0.1 + f));
     }
+}
+
+// The sizes of MERL's own files are those that a reader elsewhere expects.
+TEST(MeasuredBRDFPublished, AMERLFileHasTheSizesOfMERL) {
+  const auto grid = SpectralGrid::make({550});
+  const std::string bytes = merlFile(BRDFDiffuse(CDSpectralVector<double>(grid, 0.5)));
+  ASSERT_EQ(bytes.size(), 12 + 8 * 3 * 90 * 90 * 180u);
+  std::array<std::int32_t, 3> sizes{};
+  std::memcpy(sizes.data(), bytes.data(), 12);
+  EXPECT_EQ(sizes, (std::array<std::int32_t, 3>{90, 90, 180}));
 }
 
 TEST(MeasuredBRDFIdentity, WhatNoSurfaceCouldDoIsCounted) {

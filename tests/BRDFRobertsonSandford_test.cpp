@@ -115,6 +115,21 @@ TEST(BRDFRobertsonSandfordInvariant, TheSampler) {
   EXPECT_LT(expectSamplerGivesDHR(paint(0.1, 0, 0.2, 0.02)), 0.01);
 }
 
+// Paint that emits all and scatters nothing still has a sampler, of densities that are numbers; along the horizon it is zero.
+TEST(BRDFRobertsonSandfordInvariant, BlackPaintIsSampledToo) {
+  const CDVector given = CDVector::fromAngles(0.5, 1);
+  const BRDFRobertsonSandford black = paint(1, 0, 0, 0.3), grey = paint(0.3, 0.2, 0, 0.3);
+  for (const BRDFRobertsonSandford* model : {&black, &grey})
+    for (const double u : {0.1, 0.5, 0.9}) {
+      const BRDFSample drawn = model->sample(given, u, u, u);
+      EXPECT_NEAR(drawn.direction.getLength(), 1, 1e-12);
+      EXPECT_EQ(drawn.density_per_sr, model->density(given, drawn.direction));
+      EXPECT_TRUE(drawn.direction.z > 0 ? drawn.density_per_sr > 0 : drawn.density_per_sr == 0);
+    }
+  EXPECT_EQ(grey.density(given, {1, 0, 0}), 0);
+  EXPECT_GT(grey.density(given, normalized({1, 0, 1e-6})), 0) << "negative control";
+}
+
 TEST(BRDFRobertsonSandfordIdentity, ImpossiblePaintsAreRefused) {
   for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(paint(bad, 0.1, 0.2, 0.3), MathError);

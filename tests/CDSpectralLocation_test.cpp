@@ -235,6 +235,7 @@ TEST(CDSpectralLocationPublished, AGaussianIsCutAtAThousandth) {
   EXPECT_GT(band.lower_nm(), 748);
   EXPECT_LT(band.upper_nm(), 812);
   EXPECT_NEAR(band.getResponse().at(780, 780 + reach - 1e-9), 1e-3, 1e-12);
+  EXPECT_EQ(BandResponse::gaussian_cut, 1e-3);
   EXPECT_EQ(band.getResponse().at(780, 780 + reach + 1e-9), 0);
   // the weights sum to one all the same
   const auto weights = SpectralGrid::make({748, 770, 790, 812})->weights(band);

@@ -64,7 +64,7 @@ TEST(InputFilesIdentity, ATextIsReadWholeAndUpToItsLimit) {
   EXPECT_EQ(readWhole(scratch / "t", "x", 5).size(), 5u);
   EXPECT_NE(complaint([&] {
               readWhole(scratch / "t", "give a short one", 4);
-            }).find("5 bytes: is longer than 4 bytes; give a short one"),
+            }).find("t: 5 bytes: is longer than 4 bytes; give a short one"),
             std::string::npos);
 }
 

@@ -157,4 +157,8 @@ TEST(MieIdentity, ImpossibleSpheresAreRefused) {
   EXPECT_THROW(miePowder(1.5, 0, {100, 3.1}, 500), MathError);
   EXPECT_THROW(miePowder(1.5, 0, {-1, 1}, 500), MathError);
   EXPECT_THROW(miePowder(1.5, 0, {5000, 1}, 500), MathError);
+  // the ends of what is taken: a size of 60, which is a radius of 30 wavelengths over pi, and a spread of 3
+  EXPECT_NO_THROW(miePowder(1.5, 0, {59.9 * 500 / (2 * pi), 1}, 500));
+  EXPECT_THROW(miePowder(1.5, 0, {60.1 * 500 / (2 * pi), 1}, 500), MathError);
+  EXPECT_NO_THROW(miePowder(1.5, 0, {1, 3}, 500));
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "malus/base/Error.hpp"
 
@@ -52,6 +53,39 @@ TEST(PlatformIdentity, PathsMoveStareAndTurn) {
   near(list.at(0, 1).up, {std::sqrt(0.5), std::sqrt(0.5), 0});
   EXPECT_THROW(Platform::poses({later, nadir}), MathError);
   EXPECT_THROW(Platform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 0, 1}, {0}, 1, 0), MathError);
+}
+
+// From above, x to the right and y up: who stands behind the camera sees it turn clockwise, its top to the right.
+TEST(PlatformIdentity, AStaringCameraRollsByFrame) {
+  const auto staring = [](std::vector<double> roll_rad) {
+    return Platform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 1, 0}, std::move(roll_rad), 3, 1);
+  };
+  const Platform each = staring({0, pi / 2, pi}), all = staring({pi / 2});
+  near(each.at(0).up, {0, 1, 0});
+  near(each.at(1).up, {1, 0, 0});
+  near(each.at(2).up, {0, -1, 0});
+  for (std::size_t frame = 0; frame < 3; ++frame) near(all.at(frame).up, {1, 0, 0});
+  EXPECT_THROW(all.at(3), std::out_of_range);
+  EXPECT_THROW(staring({0, 1}), MathError);
+  EXPECT_THROW(staring({0, 1, 2, 3}), MathError);
+}
+
+// Cells of a pixel are the fewest columns and rows that hold all samples, nearly a square; without jitter rays go through
+// the middles of the first ones, row by row.
+TEST(SensorIdentity, SamplesStandInCells) {
+  const Platform platform = Platform::fixed(nadir);
+  for (const auto& [samples, columns, rows] : std::vector<std::array<int, 3>>{
+           {1, 1, 1}, {2, 2, 1}, {3, 2, 2}, {5, 3, 2}, {7, 3, 3}, {10, 4, 3}}) {
+    SensorGeometry g = camera(SensorKind::framing).geometry();
+    g.samples = std::size_t(samples);
+    const Sensor sensor(g, SpectralGrid::make({550}), light);
+    for (int sample = 0; sample < samples; ++sample) {
+      const double across = (sample % columns + 0.5) / columns,
+                   down = (sample / columns + 0.5) / rows;
+      near(sensor.ray(0, 0, std::size_t(sample), platform, 0, 1).direction,
+           normalized({across - 5, 3 - down, -100}));
+    }
+  }
 }
 
 TEST(SensorIdentity, PixelsLookWhereThePinholeSays) {
