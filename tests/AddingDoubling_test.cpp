@@ -325,5 +325,8 @@ TEST(LayeredLightInvariant, RefusesTheImpossible) {
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.0}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 1.1, 1, {0.5}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.5}, {2, 2}), MathError);
+  EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.5}, {3}), MathError);
+  EXPECT_NO_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.5}, {4}));
+  EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.5}, {201}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.5}, {}, {0.2}), MathError);
 }

@@ -69,6 +69,21 @@ std::array<Mean, 2> drawnTransmission(double zenith, double n, double sigma, int
 }
 }  // namespace
 
+// A viewer in the plane of the surface still counts as above it, by both ways of adding light; 1e-5: single precision.
+TEST(GlossyCoatingIdentity, GatherAlongTheSurfaceIsScatter) {
+  const auto grid = SpectralGrid::make({550.0});
+  const BRDFGlossyCoating model = coating(1.5, 0.5, 0.2);
+  const CDVector along{1, 0, 0}, source = CDVector::fromAngles(0.7, 2);
+  const CDSpectralVector<CDStokesVector> light(grid, CDStokesVector(3.0));
+  const float x = float(source.x), y = float(source.y), z = float(source.z), weight = 0.25f;
+  CDSpectralVector<CDStokesVector> gathered(grid), scattered(grid);
+  model.gather(along, {1, &x, &y, &z, &weight}, light, gathered);
+  model.scatter(BRDFGeometry::fromDirections(source, along), 0.25, light, scattered);
+  const double expected = CDStokesVector(scattered.at(0)).getScalar();
+  EXPECT_GT(expected, 0) << "negative control: there is something to see";
+  EXPECT_NEAR(CDStokesVector(gathered.at(0)).getScalar(), expected, 1e-5 * expected);
+}
+
 // Diffuse reflection inside and outside of n = 1.5: .596 and .092 (Judd 1942), to the digits printed.
 TEST(BRDFGlossyCoatingPublished, ReflectanceForDiffuseLight) {
   const double inner = coating(1.5, 0.5, 0).getInnerReflectance(0);

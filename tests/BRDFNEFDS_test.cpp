@@ -9,6 +9,7 @@
 
 #include "ModelChecks.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/surface/ModelRegistry.hpp"
 
 using namespace malus;
 
@@ -149,4 +150,14 @@ TEST(BRDFNEFDSInvariant, RefusesWhatCannotBe) {
   auto dark = lasers();
   dark.bias[1] = dark.rho_d[1] = dark.rho_v[1] = 0;
   EXPECT_THROW(BRDFNEFDS(dark, measured(), sphere), MathError);
+}
+
+// A reflectance lies between nothing and all.
+TEST(BRDFNEFDSIdentity, ReflectancesAreTakenUpToTheirEnds) {
+  const auto grid = SpectralGrid::make({550.0});
+  const ModelEntry& entry = modelEntry("nefds", {});
+  for (const char* good : {"dhr=0", "dhr=0.5", "dhr=1"})
+    EXPECT_NO_THROW(exampleModel(entry, grid, good)) << good;
+  for (const char* bad : {"dhr=-0.01", "dhr=1.01"})
+    EXPECT_THROW(exampleModel(entry, grid, bad), InputError) << bad;
 }

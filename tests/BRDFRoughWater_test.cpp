@@ -33,6 +33,32 @@ TEST(BRDFRoughWaterPublished, IndexOfWater) {
   EXPECT_GT(waterIndex(400, 20, 0), waterIndex(700, 20, 0));     // dispersion
 }
 
+// The mixed difference of the formula as Quan and Fry print it, in a temperature twice and in the salinity once: 2 * 1.6e-8
+// times the square of 15 degrees, times 40. All other terms drop out, whatever the wavelength; the rest is rounding.
+TEST(BRDFRoughWaterPublished, SaltMattersTheMoreTheWarmerTheWater) {
+  const auto bend = [](double salinity) {
+    return waterIndex(550, 30, salinity) - 2 * waterIndex(550, 15, salinity) +
+           waterIndex(550, 0, salinity);
+  };
+  EXPECT_NEAR(bend(40) - bend(0), 2 * 1.6e-8 * 15 * 15 * 40, 1e-14);
+  EXPECT_NEAR(bend(0), -2 * 2.02e-6 * 15 * 15, 1e-14);
+}
+
+// A viewer in the plane of the surface still counts as above it, by both ways of adding light; 1e-5: single precision.
+TEST(BRDFRoughWaterIdentity, GatherAlongTheSurfaceIsScatter) {
+  const auto grid = SpectralGrid::make({550.0});
+  const BRDFRoughWater model = sea(12, true);
+  const CDVector along{1, 0, 0}, source = CDVector::fromAngles(0.7, 2);
+  const CDSpectralVector<CDStokesVector> light(grid, CDStokesVector(3.0));
+  const float x = float(source.x), y = float(source.y), z = float(source.z), weight = 0.25f;
+  CDSpectralVector<CDStokesVector> gathered(grid), scattered(grid);
+  model.gather(along, {1, &x, &y, &z, &weight}, light, gathered);
+  model.scatter(BRDFGeometry::fromDirections(source, along), 0.25, light, scattered);
+  const double expected = CDStokesVector(scattered.at(0)).getScalar();
+  EXPECT_GT(expected, 0) << "negative control: there is something to see";
+  EXPECT_NEAR(CDStokesVector(gathered.at(0)).getScalar(), expected, 1e-5 * expected);
+}
+
 // Diffuse light on flat water: 0.066 outside for n = 4/3, 0.48 inside for n = 1.341 (Mobley 1994).
 TEST(BRDFRoughWaterPublished, DiffuseLightOnFlatWater) {
   const auto grid = SpectralGrid::make({550.0});
