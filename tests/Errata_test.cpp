@@ -10,6 +10,7 @@
 
 #include "Items.hpp"
 #include "malus/base/Table.hpp"
+#include "malus/thesis/PlateDigits.hpp"
 
 using namespace malus;
 

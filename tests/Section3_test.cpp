@@ -11,6 +11,8 @@
 #include <set>
 
 #include "Items.hpp"
+#include "malus/thesis/Bench.hpp"
+#include "malus/thesis/Slips.hpp"
 
 using namespace malus;
 
@@ -152,7 +154,7 @@ TEST(Section3Published, NegativeControlACorruptedPrintIsSeen) {
   const Corrupted table("T3.2.csv", "vertical,1,-1,0,0", "vertical,1,-1,0,0.001");
   EXPECT_EQ(named(ran("T3.2", reproduceT32, table.data), Verdict::differs),
             (std::set<std::string>{"vertical"}));
-  const Corrupted copper("N8-copper.csv", "0.3026,", "0.3036,");
+  const Corrupted copper("E7.8.csv", "2,3,0.3026", "2,3,0.3036");
   EXPECT_TRUE(named(ran("N8", reproduceN8, copper.data), Verdict::differs).contains("eq3.77"));
 }
 

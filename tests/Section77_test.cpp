@@ -11,6 +11,7 @@
 #include "Items.hpp"
 #include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
+#include "malus/thesis/XSky.hpp"
 
 using namespace malus;
 
