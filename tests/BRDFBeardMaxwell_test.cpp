@@ -11,6 +11,7 @@
 #include "ModelChecks.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
+#include "malus/surface/ModelRegistry.hpp"
 
 using namespace malus;
 
@@ -272,4 +273,30 @@ TEST(BRDFBeardMaxwellInvariant, NoLightAtTheHorizon) {
   g.cos_i = g.cos_r = 0;
   EXPECT_EQ(f00(model, g), 0);
   EXPECT_GT(f00(model, BRDFGeometry::fromDegrees(89, 89, 180)), 1);
+}
+
+// Without facets all light comes from inside, and every direction is drawn by Lambert's law, however dark the paint.
+TEST(BRDFBeardMaxwellIdentity, WithoutFacetsLambertsLawDraws) {
+  for (const double rho_d : {0.2, 1e-4}) {
+    auto p = aluminium(1, rho_d, 0);
+    p.bias[0] = 0;
+    const BRDFBeardMaxwell matt(p);
+    const CDVector given = CDVector::fromAngles(0.6, 0);
+    for (const double zenith : {0.0, 0.6, 1.4})
+      EXPECT_NEAR(matt.density(given, CDVector::fromAngles(zenith, 2)), std::cos(zenith) / pi,
+                  1e-12);
+  }
+  const CDVector up{0, 0,
+                    1};  // negative control: with facets it is more in the mirror's direction
+  EXPECT_GT(BRDFBeardMaxwell(aluminium()).density(up, up), 1.1 / pi);
+}
+
+// Widths are slopes from a millionth, a mirror's, to a thousand, nearly upright facets.
+TEST(BRDFBeardMaxwellIdentity, WidthsAreTakenUpToTheirEnds) {
+  const auto grid = SpectralGrid::make({550.0});
+  const ModelEntry& entry = modelEntry("beard-maxwell", {});
+  for (const char* good : {"sigma=1e-6", "sigma=1000"})
+    EXPECT_NO_THROW(exampleModel(entry, grid, good)) << good;
+  for (const char* bad : {"sigma=0.99e-6", "sigma=1001"})
+    EXPECT_THROW(exampleModel(entry, grid, bad), InputError) << bad;
 }
