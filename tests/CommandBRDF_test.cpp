@@ -20,7 +20,7 @@ using namespace malus;
 namespace {
 const std::string copper =
     "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 --param sigma=0.2 ";
-const std::string plate = copper + "--theta-i 30 --theta-r 40 --phi 180 ";
+const std::string plate = copper + "--theta-i-deg 30 --theta-r-deg 40 --phi-deg 180 ";
 
 /// The names in the order of the list, as messages give them.
 std::string knownModels() {
@@ -90,7 +90,7 @@ TEST(CommandBRDFPublished, NegativeControlOneDegreeMoreMissesThem) {
   const Scratch scratch;
   const Table off =
       answer(scratch,
-             copper + "--theta-i 31 --theta-r 40 --phi 180 --format csv --param diffuse=none");
+             copper + "--theta-i-deg 31 --theta-r-deg 40 --phi-deg 180 --format csv --param diffuse=none");
   EXPECT_GT(std::abs(off.number(0, "f00") - 1.17187), 5e-6);
 }
 
@@ -131,7 +131,7 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
   const std::string question = someGeometries(true);
   put(scratch / "q.csv", question);
   EXPECT_EQ(
-      malusIn(scratch.path, "brdf --model torrance-sparrow --geometries q.csv --out a.csv")
+      malusIn(scratch.path, "brdf --model torrance-sparrow --input q.csv --out a.csv")
           .code,
       0);
   const Table asked = table(question), answered = Table::read(scratch / "a.csv");
@@ -154,8 +154,8 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
 TEST(CommandBRDFInvariant, StandardOutputIsTheFileThatOutWrites) {
   const Scratch scratch;
   put(scratch / "q.csv", someGeometries(false));
-  const Outcome outcome = malusIn(scratch.path, copper + "--geometries q.csv");
-  EXPECT_EQ(malusIn(scratch.path, copper + "--geometries q.csv --out a.csv").code, 0);
+  const Outcome outcome = malusIn(scratch.path, copper + "--input q.csv");
+  EXPECT_EQ(malusIn(scratch.path, copper + "--input q.csv --out a.csv").code, 0);
   EXPECT_EQ(contents(scratch / "a.csv"), outcome.out);
 }
 
@@ -164,13 +164,13 @@ TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
   const Table f =
       answer(scratch,
              "brdf --model lambertian --param reflectance=0.5 --param polarization_kept=0.25 "
-             "--theta-i 10 --theta-r 20 --phi 0 --format csv");
+             "--theta-i-deg 10 --theta-r-deg 20 --phi-deg 0 --format csv");
   EXPECT_DOUBLE_EQ(f.number(0, "f00"), 0.5 / M_PI);
   EXPECT_DOUBLE_EQ(f.number(0, "f33"), 0.125 / M_PI);
   EXPECT_EQ(f.number(0, "f01"), 0);
   const Table dhr =
       answer(scratch,
-             "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i 60 --format csv");
+             "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i-deg 60 --format csv");
   EXPECT_NEAR(dhr.number(0, "dhr"), 0.5, 1e-12);  // rounding of pi * (1/pi)
 }
 
@@ -179,7 +179,7 @@ TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
 TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
   const Scratch scratch;
   const std::string model =
-      "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i 50 ";
+      "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i-deg 50 ";
   const Table samples = answer(scratch, model + "--sample 20000 --seed 7");
   const double draws = std::stod(samples.header("draws"));
   EXPECT_EQ(static_cast<double>(samples.rows()) + std::stod(samples.header("rejected")), draws);
@@ -229,7 +229,7 @@ TEST(CommandBRDFIdentity, TheHorizonIsTheLimit) {
   const Scratch scratch;
   const auto f00 = [&](const std::string& theta_r) {
     return answer(scratch,
-                  copper + "--theta-i 30 --theta-r " + theta_r + " --phi 180 --format csv")
+                  copper + "--theta-i-deg 30 --theta-r-deg " + theta_r + " --phi-deg 180 --format csv")
         .number(0, "f00");
   };
   EXPECT_GT(f00("90"), 0.05);
@@ -247,11 +247,11 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
   put(scratch / "q.csv", question);
   const std::string copper_only =
       "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
-  const Table column = answer(scratch, copper_only + "--geometries q.csv");
+  const Table column = answer(scratch, copper_only + "--input q.csv");
   for (int i = 0; i < 5; ++i) {
     const Table flag =
         answer(scratch, copper_only +
-                            "--theta-i 70 --theta-r 60 --phi 175 --format csv --param sigma=" +
+                            "--theta-i-deg 70 --theta-r-deg 60 --phi-deg 175 --format csv --param sigma=" +
                             sigmas[i] + " --param shadowing=" + words[i]);
     EXPECT_TRUE(sameBits(column.number(i, "f00"), flag.number(0, "f00"))) << i;
     EXPECT_TRUE(sameBits(column.number(i, "f23"), flag.number(0, "f23"))) << i;
@@ -263,10 +263,10 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
 TEST(CommandBRDFIdentity, ReflectancesTakeTheSameFile) {
   const Scratch scratch;
   put(scratch / "q.csv", "theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n0,40,180\n");
-  const Table file = answer(scratch, copper + "--dhr --geometries q.csv");
+  const Table file = answer(scratch, copper + "--dhr --input q.csv");
   EXPECT_EQ(file.text("theta_r_deg"), (std::vector<std::string>{"40", "40"}));
   EXPECT_EQ(file.number(0, "dhr"),
-            answer(scratch, copper + "--dhr --theta-i 30 --format csv").number(0, "dhr"));
+            answer(scratch, copper + "--dhr --theta-i-deg 30 --format csv").number(0, "dhr"));
   EXPECT_NE(file.number(0, "dhr"), file.number(1, "dhr"));
 }
 
@@ -288,14 +288,14 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith_deg=20 ";
   put(scratch / "q.csv", "file,theta_i_deg,theta_r_deg,phi_deg\nnef.csv,30,40,170\n");
   const std::string file = "--param file=nef.csv ";
-  for (const std::string& way : {file + "--theta-i 30 --theta-r 40 --phi 170 --format csv",
-                                 std::string("--geometries q.csv")}) {
+  for (const std::string& way : {file + "--theta-i-deg 30 --theta-r-deg 40 --phi-deg 170 --format csv",
+                                 std::string("--input q.csv")}) {
     const Table table = answer(scratch, nefds + way);
     for (int k = 0; k < 16; ++k)
       EXPECT_TRUE(sameBits(table.number(0, fmt::format("f{}{}", k / 4, k % 4)), f.data()[k]));
   }
   const auto error = [&](const std::string& arguments) {
-    const Outcome outcome = malusIn(scratch.path, arguments + "--dhr --theta-i 20");
+    const Outcome outcome = malusIn(scratch.path, arguments + "--dhr --theta-i-deg 20");
     EXPECT_EQ(outcome.code, 2);
     return outcome.err;
   };
@@ -327,7 +327,7 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
   const std::string glass =
       "brdf --model torrance-sparrow --param n=1.5 --param k=0 --param sigma=0.3 --param "
       "shadowing=smith --param diffuse=none ";  // reciprocal, as MERL's layout takes for granted
-  const std::string geometry = "--theta-i 30 --theta-r 44 --phi 170 --format csv";
+  const std::string geometry = "--theta-i-deg 30 --theta-r-deg 44 --phi-deg 170 --format csv";
   const Table truth = answer(scratch, glass + geometry);
   for (const auto& [file, model] :
        {std::pair{"t.csv", "measured"}, {"t.pbsdf", "measured"}, {"t.binary", "merl"}}) {
@@ -368,10 +368,10 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
       "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
   EXPECT_EQ(
       error(glass + "--table t.csv --dhr"),
-      "command line: --table: excludes angles, --geometries, --dhr, --emissivity, --sample, "
+      "command line: --table: excludes angles, --input, --dhr, --emissivity, --sample, "
       "--format and --out; ask for one thing at a time\n");
   for (const std::string other :
-       {"--emissivity", "--format csv", "--theta-i 30", "--out a.csv"})
+       {"--emissivity", "--format csv", "--theta-i-deg 30", "--out a.csv"})
     EXPECT_EQ(malusIn(scratch.path, glass + "--table u.csv " + other).code, 2) << other;
   EXPECT_FALSE(std::filesystem::exists(scratch / "u.csv"));
   EXPECT_EQ(
@@ -386,10 +386,10 @@ TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
   const Outcome outcome = malusIn(
       scratch.path,
-      copper + "--param shadowing=none --theta-i 30 --theta-r 90 --phi 180 --out a.csv");
+      copper + "--param shadowing=none --theta-i-deg 30 --theta-r-deg 90 --phi-deg 180 --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
-            "command line: --theta-r = 90 deg: has no finite BRDF here; stay below 90, or "
+            "command line: --theta-r-deg = 90 deg: has no finite BRDF here; stay below 90, or "
             "choose a shadowing other than none\n");
   EXPECT_EQ(filesBelow(scratch.path), 0u);
 }
@@ -416,7 +416,7 @@ TEST(CommandBRDFIdentity, WhatCannotBeWrittenIsSaidSo) {
 // Where, what, and what would be right; exit code 2; one line; no file.
 TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
   const std::string flags = "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
-  const std::string angles = " --theta-i 30 --theta-r 40 --phi 180 --out a.csv";
+  const std::string angles = " --theta-i-deg 30 --theta-r-deg 40 --phi-deg 180 --out a.csv";
   const std::pair<std::string, std::string> cases[] = {
       {flags + "--param sigma=-1" + angles,
        "command line: --param sigma = -1 rad: must be 1e-06 to 10; give roughness, standard "
@@ -434,10 +434,10 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"brdf --model torrance-sparrow --param n=1 --param k=-2 --param sigma=0.2" + angles,
        "command line: --param k = -2: must be 0 to 1e+06; give imaginary part of the index, 0 "
        "for a dielectric (0 to 1e+06)"},
-      {copper + "--theta-i 30 --sample -5",
+      {copper + "--theta-i-deg 30 --sample -5",
        "command line: --sample = -5: is not a whole number from 1 to 4294967295; give e.g. "
        "1000"},
-      {copper + "--theta-i 30 --sample 5 --seed x",
+      {copper + "--theta-i-deg 30 --sample 5 --seed x",
        "command line: --seed = x: is not a whole number from 0 to 4294967295; give e.g. 1000"},
       {plate + "--out ''",
        "command line: --out: must name a file; malus brdf --help shows what is understood"},
@@ -470,32 +470,32 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
            knownModels()},
       {"brdf" + angles,
        "command line: --model: is missing; malus brdf --list shows the models"},
-      {copper + "--theta-i 90.5 --theta-r 40 --phi 180 --out a.csv",
-       "command line: --theta-i = 90.5 deg: must be 0 to 90; give the angle from the surface "
+      {copper + "--theta-i-deg 90.5 --theta-r-deg 40 --phi-deg 180 --out a.csv",
+       "command line: --theta-i-deg = 90.5 deg: must be 0 to 90; give the angle from the surface "
        "normal, in degrees"},
-      {copper + "--theta-i -1 --theta-r 40 --phi 180 --out a.csv",
-       "command line: --theta-i = -1 deg: must be 0 to 90; give the angle from the surface "
+      {copper + "--theta-i-deg -1 --theta-r-deg 40 --phi-deg 180 --out a.csv",
+       "command line: --theta-i-deg = -1 deg: must be 0 to 90; give the angle from the surface "
        "normal, in degrees"},
-      {copper + "--theta-i 30 --theta-r inf --phi 180 --out a.csv",
-       "command line: --theta-r = inf: is not a finite number; write a number such as 0.2"},
-      {copper + "--theta-i 30 --phi 180 --out a.csv",
-       "command line: --theta-r: is missing; give an angle in degrees, or a file with "
-       "--geometries"},
-      {copper + "--theta-i 90 --dhr --out a.csv",
-       "command line: --theta-i = 90 deg: must be 0 to 90, without 90; give the angle from the "
+      {copper + "--theta-i-deg 30 --theta-r-deg inf --phi-deg 180 --out a.csv",
+       "command line: --theta-r-deg = inf: is not a finite number; write a number such as 0.2"},
+      {copper + "--theta-i-deg 30 --phi-deg 180 --out a.csv",
+       "command line: --theta-r-deg: is missing; give an angle in degrees, or a file with "
+       "--input"},
+      {copper + "--theta-i-deg 90 --dhr --out a.csv",
+       "command line: --theta-i-deg = 90 deg: must be 0 to 90, without 90; give the angle from the "
        "surface normal, in degrees"},
-      {copper + "--theta-i 30 --phi 180 --dhr --out a.csv",
-       "command line: --phi: has no meaning here; give only --theta-i"},
-      {copper + "--theta-r 30 --theta-i 20 --emissivity --out a.csv",
-       "command line: --theta-i: has no meaning here; give only --theta-r"},
+      {copper + "--theta-i-deg 30 --phi-deg 180 --dhr --out a.csv",
+       "command line: --phi-deg: has no meaning here; give only --theta-i-deg"},
+      {copper + "--theta-r-deg 30 --theta-i-deg 20 --emissivity --out a.csv",
+       "command line: --theta-i-deg: has no meaning here; give only --theta-r-deg"},
       {plate + "--seed 2 --out a.csv",
        "command line: --seed: belongs to --sample; leave it out"},
       {plate + "--steps 2 --out a.csv",
        "command line: --steps: belongs to --table; leave it out"},
-      {copper + "--geometries none.csv --out a.csv",
+      {copper + "--input none.csv --out a.csv",
        "none.csv: is not there; give the name of a readable CSV file"},
-      {copper + "--geometries q.csv --theta-i 30 --out a.csv",
-       "command line: --geometries: excludes --theta-i, --theta-r and --phi; give a file or "
+      {copper + "--input q.csv --theta-i-deg 30 --out a.csv",
+       "command line: --input: excludes --theta-i-deg, --theta-r-deg and --phi-deg; give a file or "
        "angles"},
       {plate + "--format xml",
        "command line: --format: xml not in {text,csv,json}; malus brdf --help shows what is "
@@ -542,7 +542,7 @@ TEST(CommandBRDFIdentity, ABadFileIsOneLineAndLeavesNothing) {
   const Scratch scratch;
   for (const auto& [question, line] : cases) {
     put(scratch / "q.csv", question);
-    const Outcome outcome = malusIn(scratch.path, copper + "--geometries q.csv --out a.csv");
+    const Outcome outcome = malusIn(scratch.path, copper + "--input q.csv --out a.csv");
     EXPECT_EQ(outcome.code, 2) << question;
     EXPECT_EQ(outcome.err, line + "\n") << question;
     EXPECT_EQ(filesBelow(scratch.path), 1u) << question;
@@ -556,7 +556,7 @@ TEST(CommandBRDFIdentity, AParameterInATableIsCheckedWithItsLine) {
       "theta_i_deg,theta_r_deg,phi_deg,sigma\n30,40,180,0.2\n30,40,180,-1\n");
   const Outcome outcome = malusIn(scratch.path,
                                   "brdf --model torrance-sparrow --param n=0.405 --param "
-                                  "k=2.950 --geometries q.csv --out a.csv");
+                                  "k=2.950 --input q.csv --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
             "q.csv:3: sigma = -1 rad: must be 1e-06 to 10; give roughness, standard deviation "
@@ -567,6 +567,6 @@ TEST(CommandBRDFIdentity, AParameterInATableIsCheckedWithItsLine) {
 TEST(CommandBRDFInvariant, AnOldFileSurvivesAFailedRun) {
   const Scratch scratch;
   put(scratch / "a.csv", "precious\n");
-  malusIn(scratch.path, copper + "--theta-i 30 --theta-r 400 --phi 180 --out a.csv");
+  malusIn(scratch.path, copper + "--theta-i-deg 30 --theta-r-deg 400 --phi-deg 180 --out a.csv");
   EXPECT_EQ(contents(scratch / "a.csv"), "precious\n");
 }

@@ -34,9 +34,9 @@ TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
   put(scratch / "angles.csv", geometries());
   const Outcome brdf = malusIn(scratch.path,
                                "brdf --model torrance-sparrow --param n=0.405 --param k=2.95 "
-                               "--param sigma=0.2 --geometries angles.csv --out plate.csv");
+                               "--param sigma=0.2 --input angles.csv --out plate.csv");
   ASSERT_EQ(brdf.code, 0) << brdf.err;
-  const Outcome fit = malusIn(scratch.path, "fit --samples plate.csv --out fit.csv");
+  const Outcome fit = malusIn(scratch.path, "fit --input plate.csv --out fit.csv");
   ASSERT_EQ(fit.code, 0) << fit.err;
   EXPECT_EQ(fit.out, "");
   const Table answer = Table::read(scratch / "fit.csv");
@@ -50,8 +50,8 @@ TEST(CommandFitIdentity, FindsTheCopperThatBrdfWasGiven) {
   // negative control: another plate is not this copper
   malusIn(scratch.path,
           "brdf --model torrance-sparrow --param n=0.45 --param k=2.95 --param sigma=0.21 "
-          "--geometries angles.csv --out other.csv");
-  const Table other = tableOf(malusIn(scratch.path, "fit --samples other.csv").out);
+          "--input angles.csv --out other.csv");
+  const Table other = tableOf(malusIn(scratch.path, "fit --input other.csv").out);
   EXPECT_GT(other.number(0, "n"), 0.42);
   EXPECT_GT(other.number(0, "sigma"), 0.205);
 }
@@ -64,7 +64,7 @@ TEST(CommandFitPublished, GlassByHandAndTwoWavelengths) {
       "wavelength_nm,theta_i_deg,Rs,Rp\n500,0,0.04,0.04\n500.0,45,0.0920134,0.00846647\n"
       "600,0,0.0625,0.0625\n600,45,0.1309819,0.0171563\n");
   const Outcome fit = malusIn(
-      scratch.path, "fit --samples glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
+      scratch.path, "fit --input glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
   ASSERT_EQ(fit.code, 0) << fit.err;
   const Table answer = tableOf(fit.out);
   ASSERT_EQ(answer.rows(), 2u);
@@ -89,20 +89,20 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
   put(scratch / "percent.csv", "theta_i_deg,Rs,Rp\n20,5,3.2\n60,17.8,0.2\n");
   put(scratch / "colour.csv", "wavelength_nm,theta_i_deg,Rs\n-5,20,0.1\n");
   for (const std::string& bad :
-       {std::string("fit"), std::string("fit --samples absent.csv"),
-        std::string("fit --samples none.csv"), std::string("fit --samples nothing.csv"),
-        std::string("fit --samples almost.csv"), std::string("fit --samples angle.csv"),
-        std::string("fit --samples text.csv"), std::string("fit --samples zero.csv"),
-        std::string("fit --samples view.csv"), std::string("fit --samples colour.csv"),
-        std::string("fit --samples percent.csv --fix sigma=0.1 --fix diffuse=0"),
-        std::string("fit --samples normal.csv"),
-        std::string("fit --samples normal.csv --fix sigma=0.1 --fix diffuse=0 --out fit.csv"),
-        std::string("fit --samples normal.csv --fix sigma"),
-        std::string("fit --samples normal.csv --fix sigam=0.1"),
-        std::string("fit --samples normal.csv --fix sigma=-1"),
-        std::string("fit --samples normal.csv --fix k=1 --fix k=1"),
-        std::string("fit --samples normal.csv --error 0"),
-        std::string("fit --samples normal.csv --error x")}) {
+       {std::string("fit"), std::string("fit --input absent.csv"),
+        std::string("fit --input none.csv"), std::string("fit --input nothing.csv"),
+        std::string("fit --input almost.csv"), std::string("fit --input angle.csv"),
+        std::string("fit --input text.csv"), std::string("fit --input zero.csv"),
+        std::string("fit --input view.csv"), std::string("fit --input colour.csv"),
+        std::string("fit --input percent.csv --fix sigma=0.1 --fix diffuse=0"),
+        std::string("fit --input normal.csv"),
+        std::string("fit --input normal.csv --fix sigma=0.1 --fix diffuse=0 --out fit.csv"),
+        std::string("fit --input normal.csv --fix sigma"),
+        std::string("fit --input normal.csv --fix sigam=0.1"),
+        std::string("fit --input normal.csv --fix sigma=-1"),
+        std::string("fit --input normal.csv --fix k=1 --fix k=1"),
+        std::string("fit --input normal.csv --error 0"),
+        std::string("fit --input normal.csv --error x")}) {
     const Outcome outcome = malusIn(scratch.path, bad);
     EXPECT_EQ(outcome.code, 2) << bad;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << bad << '\n'
@@ -111,7 +111,7 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "fit.csv"));
   const auto line = [&](const std::string& arguments) {
-    return malusIn(scratch.path, "fit --samples " + arguments).err;
+    return malusIn(scratch.path, "fit --input " + arguments).err;
   };
   EXPECT_NE(line("angle.csv").find("angle.csv:3"), std::string::npos);
   EXPECT_EQ(
@@ -139,7 +139,7 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   EXPECT_NE(fit.err.find("coefficients a wavelength: error "), std::string::npos) << fit.err;
   const auto dhr = [&](const std::string& model) {
     return tableOf(
-               malusIn(scratch.path, "brdf " + model + " --dhr --theta-i 30 --format csv").out)
+               malusIn(scratch.path, "brdf " + model + " --dhr --theta-i-deg 30 --format csv").out)
         .number(0, "dhr");
   };
   EXPECT_NEAR(dhr("--model basis --param file=sum.csv") / dhr(coating), 1, 0.02);
@@ -147,7 +147,7 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
             0.02);  // negative control
   for (const std::string& bad :
        {std::string("--basis 5"), "--basis 5.5 " + coating, "--basis 13 " + coating,
-        "--basis x " + coating, "--basis 5 --samples plate.csv " + coating, coating,
+        "--basis x " + coating, "--basis 5 --input plate.csv " + coating, coating,
         "--basis 5 --error 0.1 " + coating,
         std::string("--basis 5 --model lambertian --param reflectance=0"),
         "--basis 5 " + coating + "--wavelength-nm 500 --wavelength-nm 500",
@@ -159,7 +159,7 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   }
   EXPECT_EQ(malusIn(scratch.path,
                     "brdf --model basis --param file=sum.csv --wavelength-nm 650 "
-                    "--dhr --theta-i 30")
+                    "--dhr --theta-i-deg 30")
                 .code,
             2);
 }

@@ -62,11 +62,11 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"reproduce --lst",
        "command line: --lst: is no flag of malus reproduce; did you mean --list? known are: "
        "--help, "
-       "--list, --out, --json, --accept\n"},
-      {"sun -lat 43 --lon -77.61",
-       "command line: -lat: is no flag of malus sun; did you mean --lat? known are: --help, "
-       "--lat, "
-       "--lon, --time, --until, --step-min, --points, --out\n"},
+       "--list, --out, --json, --update-verdicts\n"},
+      {"sun -lat 43 --longitude-deg -77.61",
+       "command line: -lat: is no flag of malus sun; did you mean --latitude-deg? known are: --help, "
+       "--latitude-deg, "
+       "--longitude-deg, --time, --until, --step-min, --input, --out\n"},
       {"--vesion",
        "command line: --vesion: is no flag of malus; did you mean --version? known are: "
        "--help, "
@@ -78,7 +78,7 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"info ''",
        "command line: FILE: must not be empty; malus info --help shows what is understood\n"},
       {"table none.csv", "none.csv: is not there; give the name of a readable CSV file\n"},
-      {"table --seal none.csv", "none.csv: is not there; name a readable CSV file\n"}};
+      {"table --write-checksum none.csv", "none.csv: is not there; name a readable CSV file\n"}};
   for (const auto& [arguments, line] : cases) {
     const Outcome outcome = malusIn(scratch.path, arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
@@ -129,7 +129,7 @@ TEST(CommandLineIdentity, ATableIsCheckedAndSealed) {
   const Scratch scratch;
   put(scratch / "t.csv", "a,b\n1,2\n");
   EXPECT_EQ(malusIn(scratch.path, "table t.csv").out, "t.csv: 1 rows of a, b\n");
-  EXPECT_EQ(malusIn(scratch.path, "table --seal t.csv").code, 0);
+  EXPECT_EQ(malusIn(scratch.path, "table --write-checksum t.csv").code, 0);
   EXPECT_NE(contents(scratch / "t.csv").find("# crc32: "), std::string::npos);
   replaceIn(scratch / "t.csv", "1,2", "1,3");
   const Outcome outcome = malusIn(scratch.path, "table t.csv");
@@ -184,7 +184,7 @@ TEST(ReproduceInvariant, NegativeControlACorruptedVerdictMakesTheRunFail) {
       << outcome.out;
   EXPECT_EQ(copy.run("reproduce F3.9 --out out").code,
             0);  // a partial run looks only at its own items
-  EXPECT_EQ(copy.run("reproduce T3.1 --accept --out out").code, 0);
+  EXPECT_EQ(copy.run("reproduce T3.1 --update-verdicts --out out").code, 0);
   EXPECT_EQ(contents(copy / "validation" / "claims.csv"), contents(source_data / "claims.csv"));
 }
 
@@ -196,7 +196,7 @@ TEST(ReproduceInvariant, NegativeControlACorruptedPrintedValueMakesTheRunFail) {
   const Outcome broken_seal = copy.run("reproduce E6.1 --out out");
   EXPECT_EQ(broken_seal.code, 1);
   EXPECT_NE(broken_seal.out.find("FAILED E6.1: "), std::string::npos) << broken_seal.out;
-  EXPECT_EQ(copy.run("table --seal '" + printed.string() + "'").code, 0);
+  EXPECT_EQ(copy.run("table --write-checksum '" + printed.string() + "'").code, 0);
   const Outcome outcome = copy.run("reproduce E6.1 --out out");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("CHANGED E6.1"), std::string::npos) << outcome.out;

@@ -51,7 +51,7 @@ TEST(CommandMiePublished, SampleOfBohrenAndHuffman) {
 TEST(CommandMiePublished, MatrixOfEvansAndStephens) {
   const Table series = Table::read("validation/printed/evans1991-series.csv");
   const Scratch scratch;
-  const Table ours = answered(scratch, garcia + "--matrix 10");
+  const Table ours = answered(scratch, garcia + "--matrix-step-deg 10");
   ASSERT_EQ(ours.rows(), 19u);
   std::vector<double> p(series.rows());
   for (std::size_t row = 0; row < ours.rows(); ++row) {
@@ -81,7 +81,7 @@ TEST(CommandMieIdentity, GreekConstantsAreTheMatrix) {
   ASSERT_EQ(malusIn(scratch.path, spheres + "--greek --out dust.csv").code, 0);
   const Table file = Table::read(scratch / "dust.csv");
   const Scatterer read = Scatterer::read(file);
-  const Table matrix = answered(scratch, spheres + "--matrix 15"),
+  const Table matrix = answered(scratch, spheres + "--matrix-step-deg 15"),
               row = answered(scratch, spheres);
   for (std::size_t i = 0; i < matrix.rows(); ++i) {
     const ScatteringMatrix f =
@@ -131,7 +131,7 @@ TEST(CommandMieInvariant, TheSkyTakesTheAlbedoFromTheFile) {
   const std::string albedo =
       Table::read(scratch / "dust.csv").header("single_scattering_albedo");
   const std::string ask =
-      "sky --wavelength-nm 550 --mu0 0.6 --mu 0.4 --phi 90 --aerosol dust.csv --aerosol-tau "
+      "sky --wavelength-nm 550 --mu0 0.6 --mu 0.4 --phi-deg 90 --aerosol dust.csv --aerosol-tau "
       "0.3";
   const Table from_file = answered(scratch, ask),
               told = answered(scratch, ask + " --aerosol-albedo " + albedo),
@@ -191,9 +191,9 @@ TEST(CommandMieInvariant, BadInputIsOneLineAndExitCodeTwo) {
            good + "--median-radius-um 0.2",
            good + "--median-radius-um 0.2 --deviation 1",
            good + "--median-radius-um 5 --deviation 3",
-           good + "--radius-um 0.2 --matrix 7",
-           good + "--radius-um 0.2 --matrix 0",
-           good + "--radius-um 0.2 --matrix 1 --greek",
+           good + "--radius-um 0.2 --matrix-step-deg 7",
+           good + "--radius-um 0.2 --matrix-step-deg 0",
+           good + "--radius-um 0.2 --matrix-step-deg 1 --greek",
            good + "--radius-um 0.2 --effective-radius-um 0.2 --effective-variance 0.1"}) {
     const Outcome outcome = malusIn(scratch.path, "mie " + bad + " --out answer.csv");
     EXPECT_EQ(outcome.code, 2) << bad << '\n' << outcome.err;

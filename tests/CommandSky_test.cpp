@@ -63,7 +63,7 @@ TEST(CommandSkyPublished, AFileOfAerosolQuestions) {
   }
   put(scratch / "questions.csv", text);
   const Outcome outcome = malusIn(
-      scratch.path, "sky --points questions.csv --convention iprt --aerosol " + spheroids);
+      scratch.path, "sky --input questions.csv --convention iprt --aerosol " + spheroids);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Table answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), wanted.size());
@@ -105,7 +105,7 @@ TEST(CommandSkyInvariant, FluxesBalance) {
 TEST(CommandSkyIdentity, PathAndGroundAddUp) {
   const Scratch scratch;
   const std::string question =
-      "sky --tau 0.3 --mu0 0.6 --mu 0.4 --phi 50 --direction up --tau-obs 0.1 --path ";
+      "sky --tau 0.3 --mu0 0.6 --mu 0.4 --phi-deg 50 --direction up --tau-obs 0.1 --path ";
   const Table grey = tableOf(malusIn(scratch.path, question + "--albedo 0.4").out),
               black = tableOf(malusIn(scratch.path, question).out);
   EXPECT_NEAR(grey.number(0, "transmission"), std::exp(-0.2 / 0.4), 1e-15);
@@ -137,7 +137,7 @@ TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
       const auto at = [&](double zenith_deg) {
         const Table one =
             tableOf(malusIn(scratch.path,
-                            air + fmt::format(" --mu {} --phi {}",
+                            air + fmt::format(" --mu {} --phi-deg {}",
                                               std::cos(zenith_deg * std::numbers::pi / 180),
                                               points.cell(row, "phi_deg")))
                         .out);
@@ -159,7 +159,7 @@ TEST(CommandSkyPublished, AFileOfPrintedValuesInEveryConvention) {
   put(scratch / "questions.csv", questions(printed));
   for (const std::string convention : {"iprt", "natraj", "malus"}) {
     const Outcome outcome =
-        malusIn(scratch.path, "sky --points questions.csv --convention " + convention);
+        malusIn(scratch.path, "sky --input questions.csv --convention " + convention);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const Table answer = tableOf(outcome.out);
     EXPECT_EQ(answer.header("convention"), convention);
@@ -184,10 +184,10 @@ TEST(CommandSkyIdentity, FlagsAskTheSameAsAFile) {
   put(scratch / "one.csv", "tau,albedo,mu0,mu,phi_deg,label\n0.5,0.25,0.6,0.4,90,here\n");
   const Table flags = tableOf(
       malusIn(scratch.path,
-              "sky --tau 0.5 --albedo 0.25 --mu0 0.6 --mu 0.4 --phi 90 --convention iprt")
+              "sky --tau 0.5 --albedo 0.25 --mu0 0.6 --mu 0.4 --phi-deg 90 --convention iprt")
           .out);
   const Table file =
-      tableOf(malusIn(scratch.path, "sky --points one.csv --convention iprt").out);
+      tableOf(malusIn(scratch.path, "sky --input one.csv --convention iprt").out);
   ASSERT_EQ(flags.rows(), 1u);
   for (const char* column : {"I", "Q", "U"})
     EXPECT_EQ(flags.cell(0, column), file.cell(0, column));
@@ -202,7 +202,7 @@ TEST(CommandSkyIdentity, TheDomeIsASky) {
   for (const std::string convention : {"malus", "iprt"}) {
     const Outcome outcome = malusIn(
         scratch.path,
-        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --dome 10 --out sky.csv --convention " +
+        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --dome-step-deg 10 --out sky.csv --convention " +
             convention);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const TableSky sky(Table::read(scratch / "sky.csv"), SpectralGrid::make({450.0}));
@@ -211,7 +211,7 @@ TEST(CommandSkyIdentity, TheDomeIsASky) {
     sky.radiance(compassDirection(60 * degree, 40 * degree), out);
     const Table one =
         tableOf(malusIn(scratch.path,
-                        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --mu 0.5 --phi 40")
+                        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --mu 0.5 --phi-deg 40")
                     .out);
     const CDStokesVector light = out[0];
     const char* const names[]{"I", "Q", "U"};
@@ -269,22 +269,22 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
         "--tau 0.5 --mu0 0.5 --mu 0.5 --irradiance bright",
         "--wavelength-nm 1500 --mu0 0.5 --mu 0.5 --irradiance astm-e490",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --convention coulson",
-        "--points absent.csv",
-        "--points none.csv",
-        "--points bad.csv --out answers.csv",
-        "--points column.csv",
-        "--points answer.csv",
-        "--points good.csv --mu 0.4",
-        "--points good.csv --dome 5",
-        "--tau 0.5 --mu0 0.5 --dome 5",
-        "--wavelength-nm 500 --mu0 0.5 --dome 7",
-        "--wavelength-nm 500 --mu0 0.5 --dome 5 --picture dome",
-        "--tau 0.5 --mu0 0.5 --dome 5 --fluxes",
-        "--wavelength-nm 500 --mu0 0.5 --dome 5 --mu 0.4",
-        "--wavelength-nm 500 --mu0 0.5 --dome 5 --path",
-        "--tau 0.5 --mu0 0.5 --fluxes --phi 3",
+        "--input absent.csv",
+        "--input none.csv",
+        "--input bad.csv --out answers.csv",
+        "--input column.csv",
+        "--input answer.csv",
+        "--input good.csv --mu 0.4",
+        "--input good.csv --dome-step-deg 5",
+        "--tau 0.5 --mu0 0.5 --dome-step-deg 5",
+        "--wavelength-nm 500 --mu0 0.5 --dome-step-deg 7",
+        "--wavelength-nm 500 --mu0 0.5 --dome-step-deg 5 --picture dome",
+        "--tau 0.5 --mu0 0.5 --dome-step-deg 5 --fluxes",
+        "--wavelength-nm 500 --mu0 0.5 --dome-step-deg 5 --mu 0.4",
+        "--wavelength-nm 500 --mu0 0.5 --dome-step-deg 5 --path",
+        "--tau 0.5 --mu0 0.5 --fluxes --phi-deg 3",
         "--tau 0.5 --pressure-hPa 1000 --mu0 0.5 --mu 0.5",
-        "--tau 0.5 --mu0 0.5 --mu 0.5 --phi 1e300",
+        "--tau 0.5 --mu0 0.5 --mu 0.5 --phi-deg 1e300",
         "--tau 0.5 --mu0 0 --fluxes",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --path",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --aerosol-tau 0.1",
@@ -302,7 +302,7 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(outcome.out, "") << bad;
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "answers.csv"));
-  EXPECT_NE(malusIn(scratch.path, "sky --points bad.csv").err.find("bad.csv:3"),
+  EXPECT_NE(malusIn(scratch.path, "sky --input bad.csv").err.find("bad.csv:3"),
             std::string::npos);
   EXPECT_NE(malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --irradiance bright")
                 .err.find("is no irradiance; give pi, astm-e490 or a number"),
@@ -318,14 +318,14 @@ TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
   const auto intensity = [&](const std::string& column, const std::string& value) {
     put(scratch / "one.csv",
         "tau,mu0,mu,phi_deg," + column + "\n0.5,0.6,0.4,90," + value + "\n");
-    return tableOf(malusIn(scratch.path, "sky --points one.csv").out).number(0, "I");
+    return tableOf(malusIn(scratch.path, "sky --input one.csv").out).number(0, "I");
   };
   EXPECT_EQ(intensity("depolarisation", "0.03"), intensity("depolarization", "0.03"));
   EXPECT_NE(intensity("depolarisation", "0.03"),
             intensity("depolarisation", "0"));  // it is read
   put(scratch / "two.csv",
       "tau,mu0,mu,phi_deg,depolarization,depolarisation\n0.5,0.6,0.4,90,0,0\n");
-  const Outcome twice = malusIn(scratch.path, "sky --points two.csv");
+  const Outcome twice = malusIn(scratch.path, "sky --input two.csv");
   EXPECT_EQ(twice.code, 2);
   EXPECT_EQ(twice.err, "two.csv: depolarisation: stands beside depolarization; give it once\n");
 }
@@ -336,7 +336,7 @@ TEST(CommandSkyInvariant, ExtremeNumbersAreAnsweredOrRefused) {
   const std::vector<std::pair<std::string, std::string>> air{
       {"--tau", "0.3"},     {"--depolarization", "0.03"},
       {"--albedo", "0.5"},  {"--mu0", "0.6"},
-      {"--mu", "0.4"},      {"--phi", "30"},
+      {"--mu", "0.4"},      {"--phi-deg", "30"},
       {"--tau-obs", "0.1"}, {"--irradiance", "2"}};
   const auto without = [](const auto& flags, const std::string& left_out) {
     std::string text;
@@ -388,7 +388,7 @@ TEST(CommandSkyInvariant, AGrazingSunIsBalanced) {
 
 TEST(CommandSkyInvariant, AnEmptyTextIsNoFlag) {
   const Scratch scratch;
-  for (const char* flag : {"--aerosol", "--points", "--picture", "--albedo", "--out"}) {
+  for (const char* flag : {"--aerosol", "--input", "--picture", "--albedo", "--out"}) {
     const Outcome outcome =
         malusIn(scratch.path, std::string("sky --tau 0.3 --mu0 0.6 --mu 0.4 ") + flag + " ''");
     EXPECT_EQ(outcome.code, 2) << flag;

@@ -16,7 +16,7 @@ Table tableOf(const std::string& text) {
   std::istringstream stream(text);
   return Table::parse(stream, "answer");
 }
-const char* const nrel = "sun --lat 39.742476 --lon -105.1786 --time 2003-10-17T12:30:30-07:00";
+const char* const nrel = "sun --latitude-deg 39.742476 --longitude-deg -105.1786 --time 2003-10-17T12:30:30-07:00";
 }  // namespace
 
 // Reda and Andreas, NREL/TP-560-34302, table A5.1; tolerances as in Sun_test.
@@ -38,7 +38,7 @@ TEST(CommandSunIdentity, AFileAsksTheSame) {
   put(scratch / "places.csv",
       "time,latitude_deg,longitude_deg\n2003-10-17T19:30:30Z,39.742476,-105.1786\n2001-06-"
       "10T17:08:00Z,43.16,-77.61\n");
-  const Outcome outcome = malusIn(scratch.path, "sun --points places.csv --out suns.csv");
+  const Outcome outcome = malusIn(scratch.path, "sun --input places.csv --out suns.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   const Table file = Table::read(scratch / "suns.csv"),
@@ -52,7 +52,7 @@ TEST(CommandSunIdentity, ASeriesOfTwelveHours) {
   const Scratch scratch;
   const Outcome outcome =
       malusIn(scratch.path,
-              "sun --lat 43.16 --lon -77.61 --time 2001-06-21T07:00:00-04:00 --until "
+              "sun --latitude-deg 43.16 --longitude-deg -77.61 --time 2001-06-21T07:00:00-04:00 --until "
               "2001-06-21T18:00:00-04:00");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Table answer = tableOf(outcome.out);
@@ -71,20 +71,20 @@ TEST(CommandSunInvariant, BadInputIsOneLineAndExitCodeTwo) {
       "00Z,91,0\n");
   put(scratch / "column.csv",
       "time,latitude_deg,longtitude_deg\n2001-06-10T17:08:00Z,43.16,-77.61\n");
-  const std::string place = "sun --lat 43.16 --lon -77.61 ";
+  const std::string place = "sun --latitude-deg 43.16 --longitude-deg -77.61 ";
   for (const std::string& bad :
        {std::string("sun"), place, place + "--time noon", place + "--time 2001-06-10T17:08:00",
-        std::string("sun --lat 91 --lon 0 --time 2001-06-10T17:08:00Z"),
-        std::string("sun --lat 0 --lon 181 --time 2001-06-10T17:08:00Z"),
-        std::string("sun --lat x --lon 0 --time 2001-06-10T17:08:00Z"),
+        std::string("sun --latitude-deg 91 --longitude-deg 0 --time 2001-06-10T17:08:00Z"),
+        std::string("sun --latitude-deg 0 --longitude-deg 181 --time 2001-06-10T17:08:00Z"),
+        std::string("sun --latitude-deg x --longitude-deg 0 --time 2001-06-10T17:08:00Z"),
         place + "--time 2001-06-10T17:08:00Z --until 2001-06-09T17:08:00Z",
         place + "--time 2001-06-10T17:08:00Z --step-min 5",
         place + "--time 2001-06-10T17:08:00Z --until 2001-06-11T17:08:00Z --step-min 0",
         place + "--time 2001-06-10T17:08:00Z --until 2101-06-11T17:08:00Z --step-min 1",
-        place + "--time 2001-06-10T17:08:00Z --points bad.csv",
-        std::string("sun --points absent.csv"), std::string("sun --points none.csv"),
-        std::string("sun --points bad.csv --out suns.csv"),
-        std::string("sun --points column.csv"),
+        place + "--time 2001-06-10T17:08:00Z --input bad.csv",
+        std::string("sun --input absent.csv"), std::string("sun --input none.csv"),
+        std::string("sun --input bad.csv --out suns.csv"),
+        std::string("sun --input column.csv"),
         place + "--time 2001-06-10T17:08:00Z --out ''"}) {
     const Outcome outcome = malusIn(scratch.path, bad);
     EXPECT_EQ(outcome.code, 2) << bad;
@@ -93,16 +93,16 @@ TEST(CommandSunInvariant, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(outcome.out, "") << bad;
   }
   EXPECT_FALSE(std::filesystem::exists(scratch / "suns.csv"));
-  EXPECT_NE(malusIn(scratch.path, "sun --points bad.csv").err.find("bad.csv:3"),
+  EXPECT_NE(malusIn(scratch.path, "sun --input bad.csv").err.find("bad.csv:3"),
             std::string::npos);
 }
 
 TEST(CommandSunInvariant, ExtremeNumbersAreAnsweredOrRefused) {
   const Scratch scratch;
   const std::string time = "sun --time 2001-06-10T17:08:00Z ";
-  expectFiniteOrRefused(scratch.path, time + "--lon -77.61", "--lat");
-  expectFiniteOrRefused(scratch.path, time + "--lat 43.16", "--lon");
+  expectFiniteOrRefused(scratch.path, time + "--longitude-deg -77.61", "--latitude-deg");
+  expectFiniteOrRefused(scratch.path, time + "--latitude-deg 43.16", "--longitude-deg");
   expectFiniteOrRefused(scratch.path,
-                        time + "--lat 43.16 --lon -77.61 --until 2001-06-10T18:08:00Z",
+                        time + "--latitude-deg 43.16 --longitude-deg -77.61 --until 2001-06-10T18:08:00Z",
                         "--step-min");
 }

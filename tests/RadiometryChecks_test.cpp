@@ -235,7 +235,7 @@ TEST(RadiometryChecksIdentity, PlateIsWhatTheProgramPrints) {
   const Outcome outcome =
       malusIn(scratch.path,
               "brdf --model torrance-sparrow --param n=0.405 --param k=2.95 --param sigma=0.2 "
-              "--geometries angles.csv --format csv");
+              "--input angles.csv --format csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   std::istringstream stream(outcome.out);
   const Table printed = Table::parse(stream, "answer");

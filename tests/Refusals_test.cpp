@@ -202,11 +202,11 @@ TEST(RefusalsIdentity, PipesAndDevicesAreNoFiles) {
   ASSERT_EQ(::mkfifo((place.scratch / "pipe").c_str(), 0600), 0);
   for (const std::string arguments :
        {"render pipe --dry-run", "render /dev/zero --dry-run", "table pipe",
-        "table --seal pipe",
-        "brdf --model measured --param file=pipe --theta-i 0 --theta-r 0 --phi 0",
+        "table --write-checksum pipe",
+        "brdf --model measured --param file=pipe --theta-i-deg 0 --theta-r-deg 0 --phi-deg 0",
         "brdf --model merl --param file=/dev/zero --param blue_nm=450 --param green_nm=550 "
         "--param red_nm=650 "
-        "--theta-i 0 --theta-r 0 --phi 0"})
+        "--theta-i-deg 0 --theta-r-deg 0 --phi-deg 0"})
     expectRefusal(place, arguments, pipe);
   const Workplace piped(with("/geometry/0/obj", "pipe"));
   ASSERT_EQ(::mkfifo((piped.scratch / "pipe").c_str(), 0600), 0);
@@ -267,7 +267,7 @@ TEST(RefusalsIdentity, ATensorWhoseSizesOverflowIsRefused) {
   for (std::uint64_t i = 0; i < bands; ++i) append(data, static_cast<std::uint16_t>(400 + i));
   put(place.scratch / "k.pbsdf", head + data);
   expectRefusal(place,
-                "brdf --model measured --param file=k.pbsdf --theta-i 0 --theta-r 0 --phi 0 "
+                "brdf --model measured --param file=k.pbsdf --theta-i-deg 0 --theta-r-deg 0 --phi-deg 0 "
                 "--wavelength-nm 450",
                 "k.pbsdf: has a field M whose shape is not that of its axes");
 }
@@ -285,7 +285,7 @@ TEST(RefusalsIdentity, ADamagedMERLFileIsRefused) {
   const std::string ask =
       "brdf --model merl --param file=m.binary --param blue_nm=450 --param green_nm=550 "
       "--param red_nm=650 "
-      "--theta-i 0 --theta-r 0 --phi 0 --wavelength-nm 550";
+      "--theta-i-deg 0 --theta-r-deg 0 --phi-deg 0 --wavelength-nm 550";
   expectRefusal(place, ask, "of the light; give a file in 1/sr that is not damaged");
   const double infinite = std::numeric_limits<double>::infinity();
   std::memcpy(&bytes[12 + 8 * 60], &infinite, 8);

@@ -114,14 +114,14 @@ TEST(SkyScenesInvariant, ADomeWithAerosolIsASkyOfAScene) {
        "scenes/data/aerosol-spheroids.csv")
           .string() +
       "' --aerosol-tau 0.1 --aerosol-place below ";
-  ASSERT_EQ(malusIn(scratch.path, air + "--dome 2 --out sky.csv").code, 0);
+  ASSERT_EQ(malusIn(scratch.path, air + "--dome-step-deg 2 --out sky.csv").code, 0);
   json scene =
       mirrorScene(40, 60, {{"model", "table"}, {"file", "sky.csv"}, {"polarization", "full"}});
   scene["bands"]["wavelength_nm"] = {500};
   scene.erase("sun");
   const CDStokesVector seen = pixel(scene, 0, scratch.path);
   std::istringstream answer(
-      malusIn(scratch.path, air + "--mu 0.766044443118978 --phi 240").out);
+      malusIn(scratch.path, air + "--mu 0.766044443118978 --phi-deg 240").out);
   const Table one = Table::parse(answer, "answer");
   const CDStokesVector light(one.number(0, "I"), one.number(0, "Q"), one.number(0, "U"),
                              one.number(0, "V"));

@@ -172,9 +172,9 @@ TEST(WritersInvariant, OutputThatDoesNotArriveIsReportedByEveryCommand) {
   std::vector<std::string> commands{tester, tester + " --json", tester + " --help"};
   for (const char* arguments :
        {"--help", "--version", "brdf --help", "brdf --list",
-        "brdf --model lambertian --param reflectance=0.5 --theta-i 30 --theta-r 40 --phi 180",
-        "sun --lat 43 --lon -77.6 --time 2001-06-10T13:08:00-04:00",
-        "sky --tau 0.1 --albedo 0 --mu0 0.6 --mu 0.5 --phi 20", "schema", "info a/s.img",
+        "brdf --model lambertian --param reflectance=0.5 --theta-i-deg 30 --theta-r-deg 40 --phi-deg 180",
+        "sun --latitude-deg 43 --longitude-deg -77.6 --time 2001-06-10T13:08:00-04:00",
+        "sky --tau 0.1 --albedo 0 --mu0 0.6 --mu 0.5 --phi-deg 20", "schema", "info a/s.img",
         "info s.json", "reproduce --list", "render s.json --dry-run --out a",
         "render s.json --out c", "products a/s.img"})
     commands.push_back(program + arguments);
@@ -297,7 +297,7 @@ TEST(WritersInvariant, ATruncatedTableOfOurOwnIsNoticed) {
             0);
   const std::string ask =
       "brdf --model basis --param file=basis.csv --wavelength-nm 550 "
-      "--theta-i 30 --theta-r 40 --phi 180";
+      "--theta-i-deg 30 --theta-r-deg 40 --phi-deg 180";
   ASSERT_EQ(malusIn(scratch.path, ask).code, 0);
   const std::string whole = contents(scratch / "basis.csv");
   for (std::size_t cut = whole.size() - 2; cut > whole.size() / 2; cut -= whole.size() / 7) {
