@@ -88,9 +88,10 @@ TEST(CommandBRDFPublished, TheCopperPlateOfSection71) {
 
 TEST(CommandBRDFPublished, NegativeControlOneDegreeMoreMissesThem) {
   const Scratch scratch;
-  const Table off =
-      answer(scratch,
-             copper + "--theta-i-deg 31 --theta-r-deg 40 --phi-deg 180 --format csv --param diffuse=none");
+  const Table off = answer(
+      scratch,
+      copper +
+          "--theta-i-deg 31 --theta-r-deg 40 --phi-deg 180 --format csv --param diffuse=none");
   EXPECT_GT(std::abs(off.number(0, "f00") - 1.17187), 5e-6);
 }
 
@@ -131,9 +132,7 @@ TEST(CommandBRDFInvariant, AFileComesBackWithTheSameColumnsAndItsAnswers) {
   const std::string question = someGeometries(true);
   put(scratch / "q.csv", question);
   EXPECT_EQ(
-      malusIn(scratch.path, "brdf --model torrance-sparrow --input q.csv --out a.csv")
-          .code,
-      0);
+      malusIn(scratch.path, "brdf --model torrance-sparrow --input q.csv --out a.csv").code, 0);
   const Table asked = table(question), answered = Table::read(scratch / "a.csv");
   ASSERT_EQ(answered.rows(), asked.rows());
   ASSERT_EQ(answered.columns().size(), asked.columns().size() + 16);
@@ -168,9 +167,9 @@ TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
   EXPECT_DOUBLE_EQ(f.number(0, "f00"), 0.5 / M_PI);
   EXPECT_DOUBLE_EQ(f.number(0, "f33"), 0.125 / M_PI);
   EXPECT_EQ(f.number(0, "f01"), 0);
-  const Table dhr =
-      answer(scratch,
-             "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i-deg 60 --format csv");
+  const Table dhr = answer(
+      scratch,
+      "brdf --model lambertian --param reflectance=0.5 --dhr --theta-i-deg 60 --format csv");
   EXPECT_NEAR(dhr.number(0, "dhr"), 0.5, 1e-12);  // rounding of pi * (1/pi)
 }
 
@@ -179,7 +178,8 @@ TEST(CommandBRDFIdentity, LambertIsReflectanceOverPi) {
 TEST(CommandBRDFInvariant, SamplesGiveTheDHRAndDependOnTheSeed) {
   const Scratch scratch;
   const std::string model =
-      "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i-deg 50 ";
+      "brdf --model torrance-sparrow --param n=1.5 --param k=1 --param sigma=0.3 --theta-i-deg "
+      "50 ";
   const Table samples = answer(scratch, model + "--sample 20000 --seed 7");
   const double draws = std::stod(samples.header("draws"));
   EXPECT_EQ(static_cast<double>(samples.rows()) + std::stod(samples.header("rejected")), draws);
@@ -228,8 +228,8 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
 TEST(CommandBRDFIdentity, TheHorizonIsTheLimit) {
   const Scratch scratch;
   const auto f00 = [&](const std::string& theta_r) {
-    return answer(scratch,
-                  copper + "--theta-i-deg 30 --theta-r-deg " + theta_r + " --phi-deg 180 --format csv")
+    return answer(scratch, copper + "--theta-i-deg 30 --theta-r-deg " + theta_r +
+                               " --phi-deg 180 --format csv")
         .number(0, "f00");
   };
   EXPECT_GT(f00("90"), 0.05);
@@ -249,10 +249,11 @@ TEST(CommandBRDFInvariant, AColumnIsAFlag) {
       "brdf --model torrance-sparrow --param n=0.405 --param k=2.950 ";
   const Table column = answer(scratch, copper_only + "--input q.csv");
   for (int i = 0; i < 5; ++i) {
-    const Table flag =
-        answer(scratch, copper_only +
-                            "--theta-i-deg 70 --theta-r-deg 60 --phi-deg 175 --format csv --param sigma=" +
-                            sigmas[i] + " --param shadowing=" + words[i]);
+    const Table flag = answer(
+        scratch,
+        copper_only +
+            "--theta-i-deg 70 --theta-r-deg 60 --phi-deg 175 --format csv --param sigma=" +
+            sigmas[i] + " --param shadowing=" + words[i]);
     EXPECT_TRUE(sameBits(column.number(i, "f00"), flag.number(0, "f00"))) << i;
     EXPECT_TRUE(sameBits(column.number(i, "f23"), flag.number(0, "f23"))) << i;
   }
@@ -288,8 +289,9 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
   const std::string nefds = "brdf --model nefds --param dhr=0.4 --param dhr_zenith_deg=20 ";
   put(scratch / "q.csv", "file,theta_i_deg,theta_r_deg,phi_deg\nnef.csv,30,40,170\n");
   const std::string file = "--param file=nef.csv ";
-  for (const std::string& way : {file + "--theta-i-deg 30 --theta-r-deg 40 --phi-deg 170 --format csv",
-                                 std::string("--input q.csv")}) {
+  for (const std::string& way :
+       {file + "--theta-i-deg 30 --theta-r-deg 40 --phi-deg 170 --format csv",
+        std::string("--input q.csv")}) {
     const Table table = answer(scratch, nefds + way);
     for (int k = 0; k < 16; ++k)
       EXPECT_TRUE(sameBits(table.number(0, fmt::format("f{}{}", k / 4, k % 4)), f.data()[k]));
@@ -366,10 +368,9 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
   EXPECT_EQ(
       error(glass + "--table t.csv --steps 181"),
       "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
-  EXPECT_EQ(
-      error(glass + "--table t.csv --dhr"),
-      "command line: --table: excludes angles, --input, --dhr, --emissivity, --sample, "
-      "--format and --out; ask for one thing at a time\n");
+  EXPECT_EQ(error(glass + "--table t.csv --dhr"),
+            "command line: --table: excludes angles, --input, --dhr, --emissivity, --sample, "
+            "--format and --out; ask for one thing at a time\n");
   for (const std::string other :
        {"--emissivity", "--format csv", "--theta-i-deg 30", "--out a.csv"})
     EXPECT_EQ(malusIn(scratch.path, glass + "--table u.csv " + other).code, 2) << other;
@@ -386,7 +387,8 @@ TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   const Scratch scratch;
   const Outcome outcome = malusIn(
       scratch.path,
-      copper + "--param shadowing=none --theta-i-deg 30 --theta-r-deg 90 --phi-deg 180 --out a.csv");
+      copper +
+          "--param shadowing=none --theta-i-deg 30 --theta-r-deg 90 --phi-deg 180 --out a.csv");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
             "command line: --theta-r-deg = 90 deg: has no finite BRDF here; stay below 90, or "
@@ -471,7 +473,8 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"brdf" + angles,
        "command line: --model: is missing; malus brdf --list shows the models"},
       {copper + "--theta-i-deg 90.5 --theta-r-deg 40 --phi-deg 180 --out a.csv",
-       "command line: --theta-i-deg = 90.5 deg: must be 0 to 90; give the angle from the surface "
+       "command line: --theta-i-deg = 90.5 deg: must be 0 to 90; give the angle from the "
+       "surface "
        "normal, in degrees"},
       {copper + "--theta-i-deg -1 --theta-r-deg 40 --phi-deg 180 --out a.csv",
        "command line: --theta-i-deg = -1 deg: must be 0 to 90; give the angle from the surface "
@@ -482,7 +485,8 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
        "command line: --theta-r-deg: is missing; give an angle in degrees, or a file with "
        "--input"},
       {copper + "--theta-i-deg 90 --dhr --out a.csv",
-       "command line: --theta-i-deg = 90 deg: must be 0 to 90, without 90; give the angle from the "
+       "command line: --theta-i-deg = 90 deg: must be 0 to 90, without 90; give the angle from "
+       "the "
        "surface normal, in degrees"},
       {copper + "--theta-i-deg 30 --phi-deg 180 --dhr --out a.csv",
        "command line: --phi-deg: has no meaning here; give only --theta-i-deg"},
@@ -495,7 +499,8 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {copper + "--input none.csv --out a.csv",
        "none.csv: is not there; give the name of a readable CSV file"},
       {copper + "--input q.csv --theta-i-deg 30 --out a.csv",
-       "command line: --input: excludes --theta-i-deg, --theta-r-deg and --phi-deg; give a file or "
+       "command line: --input: excludes --theta-i-deg, --theta-r-deg and --phi-deg; give a "
+       "file or "
        "angles"},
       {plate + "--format xml",
        "command line: --format: xml not in {text,csv,json}; malus brdf --help shows what is "
@@ -567,6 +572,7 @@ TEST(CommandBRDFIdentity, AParameterInATableIsCheckedWithItsLine) {
 TEST(CommandBRDFInvariant, AnOldFileSurvivesAFailedRun) {
   const Scratch scratch;
   put(scratch / "a.csv", "precious\n");
-  malusIn(scratch.path, copper + "--theta-i-deg 30 --theta-r-deg 400 --phi-deg 180 --out a.csv");
+  malusIn(scratch.path,
+          copper + "--theta-i-deg 30 --theta-r-deg 400 --phi-deg 180 --out a.csv");
   EXPECT_EQ(contents(scratch / "a.csv"), "precious\n");
 }

@@ -63,8 +63,8 @@ TEST(CommandFitPublished, GlassByHandAndTwoWavelengths) {
   put(scratch / "glass.csv",
       "wavelength_nm,theta_i_deg,Rs,Rp\n500,0,0.04,0.04\n500.0,45,0.0920134,0.00846647\n"
       "600,0,0.0625,0.0625\n600,45,0.1309819,0.0171563\n");
-  const Outcome fit = malusIn(
-      scratch.path, "fit --input glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
+  const Outcome fit =
+      malusIn(scratch.path, "fit --input glass.csv --fix sigma=0.1 --fix diffuse=0 --fix k=0");
   ASSERT_EQ(fit.code, 0) << fit.err;
   const Table answer = tableOf(fit.out);
   ASSERT_EQ(answer.rows(), 2u);
@@ -139,7 +139,8 @@ TEST(CommandFitInvariant, ASumIsReadBack) {
   EXPECT_NE(fit.err.find("coefficients a wavelength: error "), std::string::npos) << fit.err;
   const auto dhr = [&](const std::string& model) {
     return tableOf(
-               malusIn(scratch.path, "brdf " + model + " --dhr --theta-i-deg 30 --format csv").out)
+               malusIn(scratch.path, "brdf " + model + " --dhr --theta-i-deg 30 --format csv")
+                   .out)
         .number(0, "dhr");
   };
   EXPECT_NEAR(dhr("--model basis --param file=sum.csv") / dhr(coating), 1, 0.02);

@@ -63,8 +63,11 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
        "command line: --lst: is no flag of malus reproduce; did you mean --list? known are: "
        "--help, "
        "--list, --out, --json, --update-verdicts\n"},
-      {"sun -lat 43 --longitude-deg -77.61",
-       "command line: -lat: is no flag of malus sun; did you mean --latitude-deg? known are: --help, "
+      {"sun --lat 43 --longitude-deg -77.61",
+       "command line: --lat: is now called --latitude-deg; write --latitude-deg\n"},
+      {"sun -latitude-deg 43 --longitude-deg -77.61",
+       "command line: -latitude-deg: is no flag of malus sun; did you mean --latitude-deg? "
+       "known are: --help, "
        "--latitude-deg, "
        "--longitude-deg, --time, --until, --step-min, --input, --out\n"},
       {"--vesion",
@@ -78,7 +81,8 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
       {"info ''",
        "command line: FILE: must not be empty; malus info --help shows what is understood\n"},
       {"table none.csv", "none.csv: is not there; give the name of a readable CSV file\n"},
-      {"table --write-checksum none.csv", "none.csv: is not there; name a readable CSV file\n"}};
+      {"table --write-checksum none.csv",
+       "none.csv: is not there; name a readable CSV file\n"}};
   for (const auto& [arguments, line] : cases) {
     const Outcome outcome = malusIn(scratch.path, arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;

@@ -131,7 +131,8 @@ TEST(CommandMieInvariant, TheSkyTakesTheAlbedoFromTheFile) {
   const std::string albedo =
       Table::read(scratch / "dust.csv").header("single_scattering_albedo");
   const std::string ask =
-      "sky --wavelength-nm 550 --mu0 0.6 --mu 0.4 --phi-deg 90 --aerosol dust.csv --aerosol-tau "
+      "sky --wavelength-nm 550 --mu0 0.6 --mu 0.4 --phi-deg 90 --aerosol dust.csv "
+      "--aerosol-tau "
       "0.3";
   const Table from_file = answered(scratch, ask),
               told = answered(scratch, ask + " --aerosol-albedo " + albedo),
@@ -154,9 +155,8 @@ TEST(CommandMieInvariant, TheSkyRefusesTheAerosolOfAnotherWavelength) {
   const Outcome wrong = malusIn(scratch.path, "sky --wavelength-nm 450" + ask);
   EXPECT_EQ(wrong.code, 2);
   EXPECT_EQ(wrong.err,
-            "command line: --wavelength-nm = 450: is not the wavelength of the aerosol, 650 "
-            "nm; make its file at this wavelength, "
-            "or take wavelength_nm out of its header\n");
+            "red.csv: wavelength_nm: is not that of the sky, 450 nm; make the file at this "
+            "wavelength, or take wavelength_nm out of it\n");
 }
 
 TEST(CommandMieInvariant, BadInputIsOneLineAndExitCodeTwo) {

@@ -224,8 +224,7 @@ const std::vector<BadScene> bad_scenes{
      "did you mean torrance-sparrow?"},
     {R"({"materials": {"ground": null}})", "lacks the material \"ground\" of a surface"},
     {R"({"sky": {"radiance_W_m2_sr_nm": -0.05}})",
-     "sky.radiance_W_m2_sr_nm = -0.05 W/(m^2 sr nm): is not allowed here; give a radiance in "
-     "W/(m^2 sr nm), 0 to 1e12; or a spectrum"},
+     "sky.radiance_W_m2_sr_nm = -0.05 W/(m^2 sr nm): must be 0 to 1e+12; give radiance"},
     {R"({"sun": {"irradiance_W_m2_nm": -1}})",
      "sun.irradiance_W_m2_nm = -1 W/(m^2 nm): is not allowed here"},
     {R"({"sun": null, "sky": null})", "has no light"},
@@ -265,8 +264,7 @@ const std::vector<BadScene> bad_scenes{
      "platform.velocity_m_s: does not belong to a platform of the kind \"fixed\"; leave it "
      "out, or"},
     {R"({"sky": {"model": "rayleigh"}})",
-     "sky.radiance_W_m2_sr_nm: does not belong to a sky of the model rayleigh; leave it out, "
-     "or"},
+     "sky.radiance_W_m2_sr_nm = 0.05: is no parameter of rayleigh; known are: tau, "},
     {R"({"geometry": [{"ground": {"z_m": 0, "material": "ground"}, "scale": 2}]})",
      "geometry[0].scale: does not belong to a ground"},
     {R"({"bands": {"wavelength_nm": [0.55]}})",

@@ -200,10 +200,10 @@ TEST(CommandSkyIdentity, FlagsAskTheSameAsAFile) {
 TEST(CommandSkyIdentity, TheDomeIsASky) {
   const Scratch scratch;
   for (const std::string convention : {"malus", "iprt"}) {
-    const Outcome outcome = malusIn(
-        scratch.path,
-        "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 --dome-step-deg 10 --out sky.csv --convention " +
-            convention);
+    const Outcome outcome = malusIn(scratch.path,
+                                    "sky --wavelength-nm 450 --albedo 0.2 --mu0 0.5 "
+                                    "--dome-step-deg 10 --out sky.csv --convention " +
+                                        convention);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const TableSky sky(Table::read(scratch / "sky.csv"), SpectralGrid::make({450.0}));
     CDSpectralVector<CDStokesVector> out(sky.grid());
@@ -260,7 +260,6 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
         "--tau 0.5 --mu0 0.5 --mu 1.1",
         "--tau 0.5 --albedo 1.1 --mu0 0.5 --mu 0.5",
         "--tau 0.5 --depolarization 1 --mu0 0.5 --mu 0.5",
-        "--tau 0.5 --wavelength-nm 500 --mu0 0.5 --mu 0.5",
         "--wavelength-nm 100 --mu0 0.5 --mu 0.5",
         "--wavelength-nm 500 --pressure-hPa -3 --mu0 0.5 --mu 0.5",
         "--tau 0.5 --mu0 0.5 --mu 0.5 --direction sideways",

@@ -16,7 +16,8 @@ Table tableOf(const std::string& text) {
   std::istringstream stream(text);
   return Table::parse(stream, "answer");
 }
-const char* const nrel = "sun --latitude-deg 39.742476 --longitude-deg -105.1786 --time 2003-10-17T12:30:30-07:00";
+const char* const nrel =
+    "sun --latitude-deg 39.742476 --longitude-deg -105.1786 --time 2003-10-17T12:30:30-07:00";
 }  // namespace
 
 // Reda and Andreas, NREL/TP-560-34302, table A5.1; tolerances as in Sun_test.
@@ -50,10 +51,10 @@ TEST(CommandSunIdentity, AFileAsksTheSame) {
 
 TEST(CommandSunIdentity, ASeriesOfTwelveHours) {
   const Scratch scratch;
-  const Outcome outcome =
-      malusIn(scratch.path,
-              "sun --latitude-deg 43.16 --longitude-deg -77.61 --time 2001-06-21T07:00:00-04:00 --until "
-              "2001-06-21T18:00:00-04:00");
+  const Outcome outcome = malusIn(scratch.path,
+                                  "sun --latitude-deg 43.16 --longitude-deg -77.61 --time "
+                                  "2001-06-21T07:00:00-04:00 --until "
+                                  "2001-06-21T18:00:00-04:00");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Table answer = tableOf(outcome.out);
   ASSERT_EQ(answer.rows(), 12u);
@@ -102,7 +103,8 @@ TEST(CommandSunInvariant, ExtremeNumbersAreAnsweredOrRefused) {
   const std::string time = "sun --time 2001-06-10T17:08:00Z ";
   expectFiniteOrRefused(scratch.path, time + "--longitude-deg -77.61", "--latitude-deg");
   expectFiniteOrRefused(scratch.path, time + "--latitude-deg 43.16", "--longitude-deg");
-  expectFiniteOrRefused(scratch.path,
-                        time + "--latitude-deg 43.16 --longitude-deg -77.61 --until 2001-06-10T18:08:00Z",
-                        "--step-min");
+  expectFiniteOrRefused(
+      scratch.path,
+      time + "--latitude-deg 43.16 --longitude-deg -77.61 --until 2001-06-10T18:08:00Z",
+      "--step-min");
 }

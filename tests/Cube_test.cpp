@@ -13,6 +13,7 @@
 #include "Scratch.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/files/Quicklooks.hpp"
+#include "malus/files/SpectralEXR.hpp"
 #include "malus/render/Tile.hpp"
 
 using namespace malus;

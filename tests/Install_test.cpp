@@ -26,9 +26,10 @@ TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
   fs::create_directories(scratch.path / "moved");
   fs::rename(first, moved);
   // the data: the sun's spectrum, a scene, the printed values
-  EXPECT_EQ(run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi-deg "
-                                 "0 --irradiance astm-e490"),
-            0);
+  EXPECT_EQ(
+      run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi-deg "
+                           "0 --irradiance astm-e490"),
+      0);
   EXPECT_EQ(run(scratch, moved + "/bin/malus reproduce --list"), 0);
   EXPECT_EQ(run(scratch, moved + "/bin/malus render " + moved +
                              "/share/malus/scenes/flat-plate.json --tile 0,0,4,4 --out " +
@@ -37,9 +38,10 @@ TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
   EXPECT_TRUE(fs::exists(scratch.path / "out"));
   // the control: without its data the same program says so, and ends as for bad input
   fs::rename(moved + "/share", scratch.path / "hidden");
-  EXPECT_NE(run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi-deg "
-                                 "0 --irradiance astm-e490"),
-            0);
+  EXPECT_NE(
+      run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi-deg "
+                           "0 --irradiance astm-e490"),
+      0);
   fs::rename(scratch.path / "hidden", moved + "/share");
   // the examples
   const std::string build = (scratch.path / "examples").string();

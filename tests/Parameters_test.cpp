@@ -57,9 +57,10 @@ TEST(ParametersIdentity, AScenesNumbersAndSpectraAreNotReadFromTheirText) {
   values[1] = 1.5;  // each band is looked at, and not the first alone
   spectrum.spectrum = std::make_shared<const CDSpectralVector<double>>(values);
   spectrum.place = {"s.json", 9, "materials.tin.share", 4};
-  EXPECT_EQ(complaint({{"share", spectrum}}),
-            "s.json:9:4: materials.tin.share = {..}: gives share 1.5 at 600 nm; it must be 0 to 1; "
-            "give what is kept (0 to 1)");
+  EXPECT_EQ(
+      complaint({{"share", spectrum}}),
+      "s.json:9:4: materials.tin.share = {..}: gives share 1.5 at 600 nm; it must be 0 to 1; "
+      "give what is kept (0 to 1)");
 }
 
 TEST(ParametersIdentity, EachRefusalSaysWhereWhatAndWhatWouldBeRight) {
@@ -70,10 +71,12 @@ TEST(ParametersIdentity, EachRefusalSaysWhereWhatAndWhatWouldBeRight) {
             "are: share, width_deg, depth, place, kind");
   EXPECT_EQ(complaint({{"share", half}, {"colour", written("red")}}),
             "command line: --x = red: is now called kind; write kind");
-  EXPECT_EQ(complaint({{"share", half}, {"width_deg", written("0")}}),
-            "command line: --x = 0 deg: must be above 0, up to 90; give a width (above 0, up to 90)");
-  EXPECT_EQ(complaint({{"share", half}, {"place", written("beside")}}),
-            "command line: --x = beside: is none of the words allowed here; known are: below, above");
+  EXPECT_EQ(
+      complaint({{"share", half}, {"width_deg", written("0")}}),
+      "command line: --x = 0 deg: must be above 0, up to 90; give a width (above 0, up to 90)");
+  EXPECT_EQ(
+      complaint({{"share", half}, {"place", written("beside")}}),
+      "command line: --x = beside: is none of the words allowed here; known are: below, above");
   EXPECT_EQ(complaint({{"share", written("nan")}}).substr(0, 23), "command line: --x = nan");
 }
 

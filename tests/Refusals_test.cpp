@@ -266,10 +266,11 @@ TEST(RefusalsIdentity, ATensorWhoseSizesOverflowIsRefused) {
     append(data, static_cast<float>(i) * 6.2f * 0x1p-19f);
   for (std::uint64_t i = 0; i < bands; ++i) append(data, static_cast<std::uint16_t>(400 + i));
   put(place.scratch / "k.pbsdf", head + data);
-  expectRefusal(place,
-                "brdf --model measured --param file=k.pbsdf --theta-i-deg 0 --theta-r-deg 0 --phi-deg 0 "
-                "--wavelength-nm 450",
-                "k.pbsdf: has a field M whose shape is not that of its axes");
+  expectRefusal(
+      place,
+      "brdf --model measured --param file=k.pbsdf --theta-i-deg 0 --theta-r-deg 0 --phi-deg 0 "
+      "--wavelength-nm 450",
+      "k.pbsdf: has a field M whose shape is not that of its axes");
 }
 
 TEST(RefusalsIdentity, ADamagedMERLFileIsRefused) {

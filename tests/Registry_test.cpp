@@ -10,8 +10,12 @@ struct Thing {
   std::string name;
   int number;
 };
-const bool registered[]{Registry<Thing>::add([] { return Thing{"pear", 2}; }),
-                        Registry<Thing>::add([] { return Thing{"apple", 1}; })};
+const bool registered[]{Registry<Thing>::add([] {
+                          return Thing{"pear", 2};
+                        }),
+                        Registry<Thing>::add([] {
+                          return Thing{"apple", 1};
+                        })};
 struct Other {
   std::string name;
 };
@@ -30,8 +34,9 @@ TEST(RegistryIdentity, AnUnknownNameIsAnsweredWithTheNearest) {
     Registry<Thing>::find("pera", {"s.json", 3, "sky.model"}, "a thing");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "s.json:3: sky.model = pera: is not a thing of malus; did you mean pear? known are: "
-                 "apple, pear");
+    EXPECT_STREQ(
+        error.what(),
+        "s.json:3: sky.model = pera: is not a thing of malus; did you mean pear? known are: "
+        "apple, pear");
   }
 }

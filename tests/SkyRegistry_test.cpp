@@ -23,14 +23,15 @@ constexpr double degree = std::numbers::pi / 180;
 
 // A camera over a plate, under this sky, with the sun in the north.
 json sceneUnder(const json& sky) {
-  return {{"malus", 1},
-          {"bands", {{"wavelength_nm", {450}}}},
-          {"geometry", {{{"ground", {{"material", "plate"}}}}}},
-          {"materials", {{"plate", {{"model", "lambertian"}, {"reflectance", 0.2}}}}},
-          {"sun", {{"zenith_deg", 60}, {"azimuth_deg", 0}, {"irradiance_W_m2_nm", 1}}},
-          {"sky", sky},
-          {"sensor", {{"kind", "framing"}, {"width", 4}, {"height", 4}, {"field_of_view_deg", 10}}},
-          {"platform", {{"position_m", {0, 0, 10}}, {"look_at_m", {0, 0, 0}}}}};
+  return {
+      {"malus", 1},
+      {"bands", {{"wavelength_nm", {450}}}},
+      {"geometry", {{{"ground", {{"material", "plate"}}}}}},
+      {"materials", {{"plate", {{"model", "lambertian"}, {"reflectance", 0.2}}}}},
+      {"sun", {{"zenith_deg", 60}, {"azimuth_deg", 0}, {"irradiance_W_m2_nm", 1}}},
+      {"sky", sky},
+      {"sensor", {{"kind", "framing"}, {"width", 4}, {"height", 4}, {"field_of_view_deg", 10}}},
+      {"platform", {{"position_m", {0, 0, 10}}, {"look_at_m", {0, 0, 0}}}}};
 }
 struct Example {
   std::string flags;
@@ -40,7 +41,8 @@ Example exampleOf(const SkyEntry& entry) {
   Example made{"--model " + entry.name, {{"model", entry.name}}};
   std::istringstream words(entry.example);
   for (std::string word; words >> word;) {
-    const std::string name = word.substr(0, word.find('=')), value = word.substr(name.size() + 1);
+    const std::string name = word.substr(0, word.find('=')),
+                      value = word.substr(name.size() + 1);
     made.flags += ' ' + flagOf(name) + ' ' + value;
     made.sky[name] = json::accept(value) ? json::parse(value) : json(value);
   }
@@ -51,7 +53,9 @@ Example exampleOf(const SkyEntry& entry) {
 // The scene's clear sky is tabulated: 1e-5 (RayleighSky_test).
 TEST(SkiesIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
   const Scratch scratch;
-  ASSERT_EQ(malusIn(scratch.path, "sky --wavelength-nm 450 --mu0 0.5 --dome-step-deg 10 --out sky.csv").code,
+  ASSERT_EQ(malusIn(scratch.path,
+                    "sky --wavelength-nm 450 --mu0 0.5 --dome-step-deg 10 --out sky.csv")
+                .code,
             0);
   ASSERT_GE(skyEntries().size(), 3u);
   for (const SkyEntry& entry : skyEntries()) {
@@ -60,9 +64,10 @@ TEST(SkiesIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
     CDSpectralVector<CDStokesVector> light(scene.world.grid);
     scene.world.sky->radiance(compassDirection(60 * degree, 40 * degree), light);
     const CDStokesVector ours = std::as_const(light)[0];
-    const Outcome outcome = malusIn(
-        scratch.path, "sky " + example.flags +
-                          " --wavelength-nm 450 --mu0 0.5 --mu 0.5 --phi-deg 40 --irradiance 1");
+    const Outcome outcome =
+        malusIn(scratch.path,
+                "sky " + example.flags +
+                    " --wavelength-nm 450 --mu0 0.5 --mu 0.5 --phi-deg 40 --irradiance 1");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     std::istringstream text(outcome.out);
     const Table answer = Table::parse(text, "answer");
@@ -75,7 +80,8 @@ TEST(SkiesIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
 }
 
 TEST(SkiesInvariant, EachParameterIsAKeyAndAFlagAndIsDescribed) {
-  const std::string help = malusIn(".", "sky --help").out, list = malusIn(".", "sky --list").out;
+  const std::string help = malusIn(".", "sky --help").out,
+                    list = malusIn(".", "sky --list").out;
   const json& keys = sceneSchema()["properties"]["sky"]["properties"];
   for (const SkyEntry& entry : skyEntries()) {
     EXPECT_NE(list.find(entry.name), std::string::npos);
@@ -117,12 +123,12 @@ TEST(SkiesIdentity, WhatIsWrongIsSaidAtItsPlace) {
   for (const char* flag : {"--fluxes", "--mu 0.5 --direction up", "--mu 0.5 --tau-obs 0.1",
                            "--mu 0.5 --path --direction up"}) {
     const Outcome outcome = malusIn(
-        ".", std::string("sky --model uniform --temperature-K 300 --wavelength-nm 9000 ") + flag);
+        ".",
+        std::string("sky --model uniform --temperature-K 300 --wavelength-nm 9000 ") + flag);
     EXPECT_EQ(outcome.code, 2) << flag;
     EXPECT_NE(outcome.err.find("is not made of air"), std::string::npos) << outcome.err;
   }
-  const Outcome stranger =
-      malusIn(".", "sky --tau 0.1 --mu0 0.5 --mu 0.5 --temperature-K 300");
+  const Outcome stranger = malusIn(".", "sky --tau 0.1 --mu0 0.5 --mu 0.5 --temperature-K 300");
   EXPECT_EQ(stranger.code, 2);
   EXPECT_NE(stranger.err.find("--temperature-K = 300: is no parameter of rayleigh"),
             std::string::npos)

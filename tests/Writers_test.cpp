@@ -172,7 +172,8 @@ TEST(WritersInvariant, OutputThatDoesNotArriveIsReportedByEveryCommand) {
   std::vector<std::string> commands{tester, tester + " --json", tester + " --help"};
   for (const char* arguments :
        {"--help", "--version", "brdf --help", "brdf --list",
-        "brdf --model lambertian --param reflectance=0.5 --theta-i-deg 30 --theta-r-deg 40 --phi-deg 180",
+        "brdf --model lambertian --param reflectance=0.5 --theta-i-deg 30 --theta-r-deg 40 "
+        "--phi-deg 180",
         "sun --latitude-deg 43 --longitude-deg -77.6 --time 2001-06-10T13:08:00-04:00",
         "sky --tau 0.1 --albedo 0 --mu0 0.6 --mu 0.5 --phi-deg 20", "schema", "info a/s.img",
         "info s.json", "reproduce --list", "render s.json --dry-run --out a",
