@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -14,6 +15,7 @@
 #include "malus/base/Error.hpp"
 #include "malus/render/Scene.hpp"
 #include "malus/thesis/FlatPlate.hpp"
+#include "malus/thesis/OldFaults.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
@@ -101,6 +103,30 @@ TEST(Section75Identity, LambertianTopsHaveTheRadianceOfSunAndSky) {
     EXPECT_GT(std::abs(meanOver(image.stokes[0], insideOf(image, top)) - 1.01 * expected),
               1e-3 * expected);  // negative control
   }
+}
+
+// All rays of a matt top see the same sky, so that the pixels of a top differ by their random directions alone.
+TEST(OldFaultsIdentity, ReseededPixelsAreAlike) {
+  const Scene scene = small("chunky-bar-lambertian", {20});
+  const auto spread = [](const StokesImage& image) {
+    const Pixels top = insideOf(image, "5.top");
+    EXPECT_GT(top.size(), 4u);
+    const auto [least, most] =
+        std::ranges::minmax(top, {}, [&](std::size_t pixel) { return image.stokes[0][pixel]; });
+    return image.stokes[0][most] / image.stokes[0][least] - 1;
+  };
+  // one sum of 19 terms in the same order: no more than the hit points' rounding is left
+  EXPECT_LT(spread(renderReseeded(scene, Sampling::random, {20})), 1e-12);
+  EXPECT_GT(spread(renderWith(scene, Sampling::random, {20})), 1e-3);  // negative control
+}
+
+TEST(OldFaultsIdentity, OnlyThePixelsNumberIsTaken) {
+  const Scene scene = small("chunky-bar-lambertian", {20});
+  const StokesImage reseeded = renderReseeded(scene, Sampling::random, {20}),
+                    seeded = renderWith(scene, Sampling::random, {20});
+  EXPECT_EQ(reseeded.stokes[0][0], seeded.stokes[0][0]);  // pixel 0 is pixel 0
+  EXPECT_EQ(reseeded.facet, seeded.facet);
+  EXPECT_NE(reseeded.stokes[0], seeded.stokes[0]);
 }
 
 TEST(Section75Identity, OneReflectionMakesNoCircularLight) {

@@ -36,13 +36,15 @@ World smallWorld() {
   return world;
 }
 
-double seenFrom(const World& world, const CDVector& eye) {
+double seenAlong(const World& world, const CDVector& direction,
+                 const CDVector& eye = {0, 0, 1}) {
   const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), {});
-  const Radiometry::Ray ray{eye, normalized(-eye), {0, 1, 0}, 0, 0, 0};
+  const Radiometry::Ray ray{eye, normalized(direction), {0, 1, 0}, 0, 0, 0};
   std::array<double, 4> out{};
   radiometry.radiance({&ray, 1}, out);
   return out[0];
 }
+double seenFrom(const World& world, const CDVector& eye) { return seenAlong(world, -eye, eye); }
 
 // What check() says about a small world with one part spoiled; "" if nothing.
 std::string complaint(const std::function<void(World&)>& spoil) {
@@ -59,6 +61,17 @@ std::string complaint(const std::function<void(World&)>& spoil) {
 bool names(const std::string& sentence, const std::string& part) {
   return sentence.find(part) != std::string::npos;
 }
+struct BlackSkyWithDisk final : Sky {
+  explicit BlackSkyWithDisk(Sun sun) : Sky(SpectralGrid::make({550.0})), sun_(std::move(sun)) {}
+  void radiance(const CDVector&, CDSpectralVector<CDStokesVector>& out) const override {
+    out = CDSpectralVector<CDStokesVector>(grid(), CDStokesVector(0.0));
+  }
+  bool polarized() const override { return false; }
+  std::string description() const override { return "black sky with a disk"; }
+  const Sun* disk() const override { return &sun_; }
+  Sun sun_;
+};
+
 SpectralGridPtr otherGrid() { return SpectralGrid::make({650.0}); }
 }  // namespace
 
@@ -98,6 +111,28 @@ TEST(WorldIdentity, PartsOnAnotherGridAreRefused) {
                           CDSpectralVector<double>(otherGrid(), 0.5));
                     }),
                     grids));
+}
+
+// Over the small world stands a second sun: a look into it brings its radiance, a look beside it nothing.
+TEST(WorldIdentity, ADiskInTheSkyIsSeenAndCheckedLikeASun) {
+  const World small = smallWorld();
+  const auto with = [&](double half_angle_rad, const SpectralGridPtr& grid) {
+    return complaint([&](World& world) {
+      world.sky = std::make_shared<BlackSkyWithDisk>(
+          Sun{{0, 0, 1}, {grid, CDStokesVector(2.0)}, half_angle_rad});
+    });
+  };
+  EXPECT_EQ(with(0.1, small.grid), "");  // the control
+  EXPECT_TRUE(names(with(0, small.grid), "a point in the sky"));
+  EXPECT_TRUE(names(with(2, small.grid), "half angle"));
+  EXPECT_TRUE(names(with(0.1, otherGrid()), "different grids"));
+  World world = small;
+  world.sky = std::make_shared<BlackSkyWithDisk>(
+      Sun{{0, 0, 1}, {small.grid, CDStokesVector(2.0)}, 0.1});
+  const double radiance = 2 / (pi * std::sin(0.1) * std::sin(0.1));
+  EXPECT_NEAR(seenAlong(world, {std::sin(0.09), 0, std::cos(0.09)}), radiance,
+              1e-12 * radiance);
+  EXPECT_EQ(seenAlong(world, {std::sin(0.11), 0, std::cos(0.11)}), 0.0);
 }
 
 TEST(WorldIdentity, ASunThatIsNotPhysicalIsRefused) {
