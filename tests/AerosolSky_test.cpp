@@ -119,7 +119,7 @@ TEST(AerosolSkyIdentity, AFileMayHoldSeveralWavelengths) {
       "dehaan\nwavelength_nm,single_scattering_albedo,l,alpha1,alpha2,alpha3,alpha4,"
       "beta1,beta2\n";
   for (const auto& [nm, albedo, g] :
-       {std::tuple("450", "0.9", "1.5"), std::tuple("650", "0.8", "0.5")})
+       {std::tuple("450", "0.9", "0.9"), std::tuple("650", "0.8", "0.5")})
     text += fmt::format("{0},{1},0,1,0,0,1,0,0\n{0},{1},1,{2},0,0,{2},0,0\n", nm, albedo, g);
   put(scratch / "two.csv", text);
   const SkyEntry& entry = skyEntry("rayleigh", {});

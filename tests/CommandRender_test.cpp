@@ -1018,7 +1018,7 @@ TEST(CommandRenderIdentity, ARadianceThatNoFloatHoldsIsRefused) {
   const Outcome outcome = place.render("--out a");
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_TRUE(has(outcome.err, "sky.radiance_W_m2_sr_nm = 1e+39")) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "0 to 1e12")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "0 to 1e+12")) << outcome.err;
   EXPECT_EQ(filesBelow(place.scratch / "a"), 0u);
 }
 
