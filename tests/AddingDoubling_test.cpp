@@ -39,7 +39,7 @@ Scatterer spheroids() {
 
 // Two methods without a common equation. What 32 streams resolve from mu = 0.02 on is 1e-8 for an irradiance of pi;
 // two cuts of one layer differ by rounding and by what the first layers leave.
-TEST(LayeredLightInvariant, AgreesWithTheCoherencyTensor) {
+TEST(AddingDoublingInvariant, AgreesWithTheCoherencyTensor) {
   const double depth = 0.5, rho = 0.03, sun = 0.6, albedo = 0.25;
   const RayleighLight exact(RayleighAtmosphere(depth, rho), sun, albedo, pi);
   const Scatterer air = rayleighScatterer(rho);
@@ -95,7 +95,7 @@ double largestDeviation(const std::vector<AirLayer>& layers, double depth, doubl
 }  // namespace
 
 // 1e-8 is what the chapter promises.
-TEST(LayeredLightInvariant, FlatLinesOfSightAgreeOverTheGrid) {
+TEST(AddingDoublingInvariant, FlatLinesOfSightAgreeOverTheGrid) {
   const auto air = [](double depth) {
     return std::vector<AirLayer>{{{rayleighScatterer(0.03), depth}}};
   };
@@ -115,7 +115,7 @@ TEST(LayeredLightInvariant, FlatLinesOfSightAgreeOverTheGrid) {
 
 // A grazing sun: the balance over white ground, against what comes in; and the exact solution, in the same unit, to 1e-5 at
 // mu = 0.02, which is what that solution keeps of reciprocity there.
-TEST(LayeredLightInvariant, AGrazingSunKeepsTheBalance) {
+TEST(AddingDoublingInvariant, AGrazingSunKeepsTheBalance) {
   const Scatterer air = rayleighScatterer(0.03);
   for (const double sun : {1e-3, 1e-5, 1e-9})
     for (const double depth : {0.05, 0.5}) {
@@ -135,7 +135,7 @@ TEST(LayeredLightInvariant, AGrazingSunKeepsTheBalance) {
 
 // A trace of aerosol changes next to nothing: single scattering in a depth t adds a_1 t / (4 mu) to the radiance, for 1e-10
 // and mu = 0.02 some 1e-9 (1e-9 of aerosol would itself add more than is allowed). Only the harmonics that air has.
-TEST(LayeredLightInvariant, ATraceOfAerosolAnywhereChangesNothing) {
+TEST(AddingDoublingInvariant, ATraceOfAerosolAnywhereChangesNothing) {
   const Scatterer air = rayleighScatterer(0.03);
   const double trace = 1e-10, depth = 0.2;
   const Particles dust{spheroids(), trace, 0.97};
@@ -149,7 +149,7 @@ TEST(LayeredLightInvariant, ATraceOfAerosolAnywhereChangesNothing) {
 }
 
 // Half a unit of the printed digit, and the chapter's 1e-8. Natraj, Li and Yung 2009: tau 0.5, albedo 0.25, mu0 0.6, mu 0.4, 90 deg.
-TEST(LayeredLightPublished, APrintedValue) {
+TEST(AddingDoublingPublished, APrintedValue) {
   const AddingDoubling light({{{rayleighScatterer(0), 0.5}}}, 0.6, 0.25, pi, {0.4});
   const CDStokesVector value = light.down(0, 90 * degree);
   EXPECT_NEAR(value.getStokes(0), 0.22239883, 1.5e-8);
@@ -159,7 +159,7 @@ TEST(LayeredLightPublished, APrintedValue) {
 
 // Siewert 2000, problem IIA: spheroids, tau 1, single-scattering albedo 0.973527, mu0 0.6, black ground;
 // tables 2 to 9, printed to six digits. Irradiance pi. Half a unit of the sixth digit is at most 5e-6 here.
-TEST(LayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
+TEST(AddingDoublingPublished, SpheroidsInFourStokesComponentsAndInside) {
   const Table printed = Table::read("validation/printed/siewert2000.csv");
   const std::vector<double> mu{0.1, 0.2, 0.3, 0.4, 0.5,
                                0.6, 0.7, 0.8, 0.9, std::cos(1e-4 * degree)};
@@ -211,7 +211,7 @@ TEST(LayeredLightPublished, SpheroidsInFourStokesComponentsAndInside) {
 // A thin layer to first order: the scattering matrix between beam and view, rotated by vectors. Of the light scattered
 // once, half of 1 + ln(1 / depth) times the depth is scattered again on its way out, mostly where it is flat; six times that
 // leaves room for the phase function, and a wrong sign of the azimuth must be beyond it.
-TEST(LayeredLightIdentity, AThinLayerScattersOnce) {
+TEST(AddingDoublingIdentity, AThinLayerScattersOnce) {
   const double depth = 1e-6, sun = 0.5, again = 3 * depth * (1 - std::log(depth));
   const AddingDoubling light({{{spheroids(), depth}}}, sun, 0, 1, views);
   for (std::size_t v = 0; v + 1 < views.size(); ++v)
@@ -230,7 +230,7 @@ TEST(LayeredLightIdentity, AThinLayerScattersOnce) {
 // Circular polarisation needs two scatterings. Particles that absorb nearly all leave these alone; the
 // reference is an integral over the direction and the depth in between, by midpoints (1e-3), and the third
 // order is smaller by the albedo.
-TEST(LayeredLightInvariant, TwoScatteringsMakeCircularPolarisation) {
+TEST(AddingDoublingInvariant, TwoScatteringsMakeCircularPolarisation) {
   const double depth = 0.5, kept = 1e-4, sun = 0.6, view = 0.5, phi = 1.0;
   const Scatterer matter = spheroids();
   const AddingDoubling light({{{matter, depth, kept}}}, sun, 0, 1, {view});
@@ -262,7 +262,7 @@ TEST(LayeredLightInvariant, TwoScatteringsMakeCircularPolarisation) {
 }
 
 // What an absorbing layer takes away is missing; what a conserving one takes away comes back up.
-TEST(LayeredLightInvariant, AbsorptionDarkens) {
+TEST(AddingDoublingInvariant, AbsorptionDarkens) {
   const auto sky = [](double kept) {
     return AddingDoubling({{{rayleighScatterer(0), 0.3, kept}}}, 0.6, 0.2, 1, {0.7}, {8, 2});
   };
@@ -274,7 +274,7 @@ TEST(LayeredLightInvariant, AbsorptionDarkens) {
 }
 
 // Air above a forward-scattering haze, over grey ground: 1e-8 is what the thin layer's step leaves.
-TEST(LayeredLightInvariant, EnergyIsBalanced) {
+TEST(AddingDoublingInvariant, EnergyIsBalanced) {
   for (const double albedo : {0.0, 0.3, 1.0}) {
     const AddingDoubling light(
         {{{rayleighScatterer(0.03), 0.2}},
@@ -287,7 +287,7 @@ TEST(LayeredLightInvariant, EnergyIsBalanced) {
 }
 
 // Helmholtz: sun and viewer exchanged. The reflected radiance is the sun's cosine times a symmetric function.
-TEST(LayeredLightInvariant, SunAndViewerMayBeExchanged) {
+TEST(AddingDoublingInvariant, SunAndViewerMayBeExchanged) {
   const std::vector<AirLayer> air{{{rayleighScatterer(0.03), 0.2}}, {{spheroids(), 0.4, 0.9}}};
   const AddingDoubling there(air, 0.8, 0.3, 1, {0.35}), back(air, 0.35, 0.3, 1, {0.8});
   for (const double phi : {0.2, 1.3, 2.9}) {
@@ -300,7 +300,7 @@ TEST(LayeredLightInvariant, SunAndViewerMayBeExchanged) {
 }
 
 // A layer that rounding cannot tell from a boundary is none, wherever it lies; one that it can is there.
-TEST(LayeredLightInvariant, ALayerThinnerThanRoundingIsLeftOut) {
+TEST(AddingDoublingInvariant, ALayerThinnerThanRoundingIsLeftOut) {
   const Scatterer air = rayleighScatterer(0.03);
   const Particles sky{air, 0.3, 1}, trace{air, 1e-18, 1}, soot{air, 1e-3, 0};
   const AddingDoublingAccuracy few{8, -1};
@@ -317,7 +317,7 @@ TEST(LayeredLightInvariant, ALayerThinnerThanRoundingIsLeftOut) {
   EXPECT_LT(dark.up(0, 1).getScalar(), alone - 1e-5);  // control
 }
 
-TEST(LayeredLightInvariant, RefusesTheImpossible) {
+TEST(AddingDoublingInvariant, RefusesTheImpossible) {
   const Scatterer air = rayleighScatterer(0);
   EXPECT_THROW(AddingDoubling({}, 0.5, 0, 1, {0.5}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, -1}}}, 0.5, 0, 1, {0.5}), MathError);

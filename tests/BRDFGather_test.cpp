@@ -80,7 +80,7 @@ double apart(const CDSpectralVector<CDStokesVector>& a,
 }  // namespace
 
 // 3e-6: single precision's 6e-8 through an exponent of up to some tens.
-TEST(GatherIdentity, GatherIsTheSumOfScatter) {
+TEST(BRDFGatherIdentity, GatherIsTheSumOfScatter) {
   for (const auto& options :
        {specular_only, as_thesis, reciprocal, with(Shadowing::smith, DiffuseTerm::thesis),
         with(Shadowing::vGroove, DiffuseTerm::thesis, false)})
@@ -101,7 +101,7 @@ TEST(GatherIdentity, GatherIsTheSumOfScatter) {
 }
 
 // With the viewer's own direction, the mirror's, both, and the horizon.
-TEST(GatherIdentity, GatherAtSingularDirections) {
+TEST(BRDFGatherIdentity, GatherAtSingularDirections) {
   const BRDFTorranceSparrow model = mixture(2, as_thesis);
   const auto light = whiteLight(model.grid());
   for (const double zenith : {0.0, 1e-4, 0.5, 1.5}) {
@@ -118,7 +118,7 @@ TEST(GatherIdentity, GatherAtSingularDirections) {
   }
 }
 
-TEST(GatherIdentity, NegativeControlGatherSeesATurnedViewer) {
+TEST(BRDFGatherIdentity, NegativeControlGatherSeesATurnedViewer) {
   const BRDFTorranceSparrow model = mixture(11, as_thesis);
   const auto light = whiteLight(model.grid());
   const Directions from(90);
@@ -128,7 +128,7 @@ TEST(GatherIdentity, NegativeControlGatherSeesATurnedViewer) {
   EXPECT_GT(apart(fast, plain), 3e-5);
 }
 
-TEST(GatherIdentity, GatherRefusesPolarisedLight) {
+TEST(BRDFGatherIdentity, GatherRefusesPolarisedLight) {
   const BRDFTorranceSparrow model = mixture(2, as_thesis);
   auto light = whiteLight(model.grid());
   light[1] = CDStokesVector(1, 0.5, 0, 0);
@@ -137,7 +137,7 @@ TEST(GatherIdentity, GatherRefusesPolarisedLight) {
 }
 
 // Sums in another order: rounding only.
-TEST(GatherIdentity, OfLambertsSurface) {
+TEST(BRDFGatherIdentity, OfLambertsSurface) {
   const auto grid = SpectralGrid::make({450.0, 550.0, 650.0});
   const BRDFDiffuse model(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5, 1.0}),
                           0.5);
@@ -165,7 +165,7 @@ std::vector<float> unlikeLight(std::size_t directions, std::size_t bands, std::u
 }  // namespace
 
 // 5e-6: as above, and the two rotations, whose cosines and sines have single precision's digits.
-TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
+TEST(BRDFGatherIdentity, GatherEachIsTheSumOfScatter) {
   for (const auto& options :
        {specular_only, as_thesis, reciprocal, with(Shadowing::smith, DiffuseTerm::thesis),
         with(Shadowing::vGroove, DiffuseTerm::thesis, false)})
@@ -187,7 +187,7 @@ TEST(GatherIdentity, GatherEachIsTheSumOfScatter) {
 
 // Source and viewer in one direction leave each rotation undetermined, but not what both do together; along the normal
 // the azimuth is a convention. 2e-5: half a dozen directions with their errors unaveraged.
-TEST(GatherIdentity, GatherEachAtSingularDirections) {
+TEST(BRDFGatherIdentity, GatherEachAtSingularDirections) {
   const BRDFTorranceSparrow model = mixture(2, as_thesis);
   for (const double zenith : {0.0, 1e-6, 1e-4, 0.01, 0.5, 1.2, 1.5}) {
     const CDVector v = CDVector::fromAngles(zenith, 1);
@@ -209,7 +209,7 @@ TEST(GatherIdentity, GatherEachAtSingularDirections) {
   }
 }
 
-TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
+TEST(BRDFGatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
   const BRDFTorranceSparrow model = mixture(3, as_thesis);
   const Directions from(96);
   auto light = unlikeLight(96, 3, 1);
@@ -223,7 +223,7 @@ TEST(GatherIdentity, NegativeControlGatherEachSeesATurnedFrame) {
 }
 
 // Sums in double precision of the same numbers: rounding only.
-TEST(GatherIdentity, GatherEachOfLambertsSurface) {
+TEST(BRDFGatherIdentity, GatherEachOfLambertsSurface) {
   const auto grid = SpectralGrid::make({450.0, 550.0, 650.0});
   const Directions from(90);
   const auto light = unlikeLight(90, 3, 5);
@@ -239,7 +239,7 @@ TEST(GatherIdentity, GatherEachOfLambertsSurface) {
 }
 
 // Light for one direction less, or one number more, is a mistake of the caller, by every way to gather.
-TEST(GatherIdentity, GatherEachRefusesLightOfAnotherLength) {
+TEST(BRDFGatherIdentity, GatherEachRefusesLightOfAnotherLength) {
   const auto grid = SpectralGrid::make({450.0, 550.0});
   const BRDFTorranceSparrow rough = mixture(2, as_thesis);
   const BRDFDiffuse diffuse(CDSpectralVector<double>(grid, std::vector<double>{0.1, 0.5}), 0);

@@ -70,7 +70,7 @@ std::array<Mean, 2> drawnTransmission(double zenith, double n, double sigma, int
 }  // namespace
 
 // A viewer in the plane of the surface still counts as above it, by both ways of adding light; 1e-5: single precision.
-TEST(GlossyCoatingIdentity, GatherAlongTheSurfaceIsScatter) {
+TEST(BRDFGlossyCoatingIdentity, GatherAlongTheSurfaceIsScatter) {
   const auto grid = SpectralGrid::make({550.0});
   const BRDFGlossyCoating model = coating(1.5, 0.5, 0.2);
   const CDVector along{1, 0, 0}, source = CDVector::fromAngles(0.7, 2);

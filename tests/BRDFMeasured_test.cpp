@@ -70,7 +70,7 @@ void append(std::string& bytes, const auto& number) {
 }  // namespace
 
 // At the nodes, the model to single precision (6e-8, and 8 planes turned twice).
-TEST(MeasuredBRDFIdentity, NodesAreTheModel) {
+TEST(BRDFMeasuredIdentity, NodesAreTheModel) {
   const auto model = metal();
   const MuellerTable table = tabulate(model, 12);
   const BRDFMeasured measured = own(table);
@@ -91,7 +91,7 @@ TEST(MeasuredBRDFIdentity, NodesAreTheModel) {
 }
 
 // Straight lines: four times nearer with half the step. The geometries stay away from the horizon, where nodes are missing.
-TEST(MeasuredBRDFInvariant, TheErrorFallsWithTheSquareOfTheStep) {
+TEST(BRDFMeasuredInvariant, TheErrorFallsWithTheSquareOfTheStep) {
   const auto model = metal();
   const double coarse = apart(own(tabulate(model, 12)), model, 1.1);
   const double fine = apart(own(tabulate(model, 24)), model, 1.1);
@@ -101,7 +101,7 @@ TEST(MeasuredBRDFInvariant, TheErrorFallsWithTheSquareOfTheStep) {
 }
 
 // cos^2(theta_d) f00 linear in the angles, everything known: no error but that of single precision; and nearest known nodes elsewhere.
-TEST(MeasuredBRDFIdentity, LinearTablesAreMetExactly) {
+TEST(BRDFMeasuredIdentity, LinearTablesAreMetExactly) {
   const auto cos2 = [](double angle) { return std::cos(angle) * std::cos(angle); };
   MuellerTable table;
   table.theta_h = {{0, 0.3, 1.6}, 0, 1.6, 0}, table.theta_d = {{0, 1.0, 1.5}, 0, 1.6, 0};
@@ -138,7 +138,7 @@ TEST(MeasuredBRDFIdentity, LinearTablesAreMetExactly) {
               1e-4);
 }
 
-TEST(MeasuredBRDFInvariant, ReciprocalRealizableAndFast) {
+TEST(BRDFMeasuredInvariant, ReciprocalRealizableAndFast) {
   const BRDFMeasured model = varied(16);
   EXPECT_LT(reciprocityError(model), 1e-5);                // single precision, weighed
   EXPECT_GT(reciprocityError(model, {1, 1, 1, 1}), 1e-2);  // negative control
@@ -148,7 +148,7 @@ TEST(MeasuredBRDFInvariant, ReciprocalRealizableAndFast) {
   expectScoreAndHorizon(model);
 }
 
-TEST(MeasuredBRDFInvariant, AnUnpolarisedTableIsNeutral) {
+TEST(BRDFMeasuredInvariant, AnUnpolarisedTableIsNeutral) {
   MuellerTable table = tabulate(metal(0.3, {390, 720}), 8);
   const std::size_t bands = table.wavelength_nm.size();
   std::vector<float> f00;
@@ -163,7 +163,7 @@ TEST(MeasuredBRDFInvariant, AnUnpolarisedTableIsNeutral) {
   expectScoreAndHorizon(model);
 }
 
-TEST(MeasuredBRDFInvariant, ReflectanceAndSampler) {
+TEST(BRDFMeasuredInvariant, ReflectanceAndSampler) {
   expectDHRIsTheIntegral(varied(16),
                          4e-3);  // the plain rule's 60 by 128 points over kinks of the table
   EXPECT_NEAR(varied(40).getDHR(0.6)[0], metal(0.3, {390, 720}).getDHR(0.6)[0], 0.01);
@@ -178,7 +178,7 @@ TEST(MeasuredBRDFInvariant, ReflectanceAndSampler) {
   EXPECT_LT(expectSamplerGivesDHR(varied(24, 0.1)), 0.02);
 }
 
-TEST(MeasuredBRDFIdentity, BandsOutsideTheTableAreRefused) {
+TEST(BRDFMeasuredIdentity, BandsOutsideTheTableAreRefused) {
   const MuellerTable table = tabulate(metal(), 4);
   EXPECT_THROW(BRDFMeasured(SpectralGrid::make({450, 550}), table), GridError);
   EXPECT_THROW(BRDFMeasured(SpectralGrid::make({550}), MuellerTable{}), MathError);
@@ -190,7 +190,7 @@ TEST(MeasuredBRDFIdentity, BandsOutsideTheTableAreRefused) {
 }
 
 // Written, read, and the same surface: text in nine digits of a float, tensor bit for bit.
-TEST(MeasuredBRDFIdentity, FilesGoRoundTrip) {
+TEST(BRDFMeasuredIdentity, FilesGoRoundTrip) {
   const Scratch scratch;
   const MuellerTable table = tabulate(metal(), 6);
   for (const std::string& text : {muellerCSV(table), tensorFile(table)}) {
@@ -203,7 +203,7 @@ TEST(MeasuredBRDFIdentity, FilesGoRoundTrip) {
 
 // The chapter's own example: nodes at 0, 10 and 30 (here hundredths of a radian, so that a period may be short). Without a
 // period there is nothing beyond the ends; with one, 40 lies half way in the gap from 30 to 50.
-TEST(MeasuredBRDFIdentity, AnAxisIsClosedByItsPeriodWhateverThatIs) {
+TEST(BRDFMeasuredIdentity, AnAxisIsClosedByItsPeriodWhateverThatIs) {
   const TableAxis open{{0, 0.1, 0.3}, 0, 0.3, 0}, closed{{0, 0.1, 0.3}, 0, 0, 0.5};
   const auto is = [](const TableAxis::Cell& cell, std::size_t lower, std::size_t upper,
                      double share) {
@@ -222,7 +222,7 @@ TEST(MeasuredBRDFIdentity, AnAxisIsClosedByItsPeriodWhateverThatIs) {
 }
 
 // The float before half of pi is what a file has where 90 degrees were meant; light along the surface is then known, too.
-TEST(MeasuredBRDFIdentity, AQuarterTurnInSinglePrecisionIsAQuarterTurn) {
+TEST(BRDFMeasuredIdentity, AQuarterTurnInSinglePrecisionIsAQuarterTurn) {
   const Scratch scratch;
   MuellerTable table = tabulate(metal(), 4);
   table.theta_h.nodes.back() = std::nextafter(float(pi / 2), 0.0f);
@@ -233,7 +233,7 @@ TEST(MeasuredBRDFIdentity, AQuarterTurnInSinglePrecisionIsAQuarterTurn) {
 }
 
 // The layout as the chapter describes it, laid down by hand: one matrix, f23 and f32 with the other handedness.
-TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
+TEST(BRDFMeasuredPublished, ATensorFileLaidDownByHand) {
   const Scratch scratch;
   std::string bytes("tensor_file\0\1\0", 14);
   append(bytes, std::uint32_t{5});
@@ -300,7 +300,7 @@ TEST(MeasuredBRDFPublished, ATensorFileLaidDownByHand) {
 
 // Sizes that a file cannot hold. Three axes that claim the same 2 MB have 2^19 nodes each; with 2^7 wavelengths and 2^4 elements their
 // product is 2^68, which is 0 in 64 bits: room would be made for nothing, and then be written to.
-TEST(MeasuredBRDFIdentity, SizesThatOverflowAreRefusedBeforeAnythingIsAllocated) {
+TEST(BRDFMeasuredIdentity, SizesThatOverflowAreRefusedBeforeAnythingIsAllocated) {
   const Scratch scratch;
   const auto tensor = [&](std::uint64_t nodes, std::uint64_t wavelengths,
                           std::vector<std::uint64_t> shape) {
@@ -341,7 +341,7 @@ TEST(MeasuredBRDFIdentity, SizesThatOverflowAreRefusedBeforeAnythingIsAllocated)
   EXPECT_EQ(tensor(1, 1, {1, 1, 1, 1, 4, 4}), "accepted");  // negative control
 }
 
-TEST(MeasuredBRDFIdentity, NumbersThatNoSurfaceReflectsAreRefused) {
+TEST(BRDFMeasuredIdentity, NumbersThatNoSurfaceReflectsAreRefused) {
   const Scratch scratch;
   std::string merl;
   for (const std::int32_t size : {2, 2, 2}) append(merl, size);
@@ -372,7 +372,7 @@ TEST(MeasuredBRDFIdentity, NumbersThatNoSurfaceReflectsAreRefused) {
 }
 
 // 90, 90, 180, then red, green, blue as doubles; the cell of phi_d runs fastest.
-TEST(MeasuredBRDFPublished, AMERLFileLaidDownByHand) {
+TEST(BRDFMeasuredPublished, AMERLFileLaidDownByHand) {
   const Scratch scratch;
   std::string bytes;
   for (const std::int32_t size : {90, 90, 180}) append(bytes, size);
@@ -410,7 +410,7 @@ TEST(MeasuredBRDFPublished, AMERLFileLaidDownByHand) {
 }
 
 // A round trip of f00; between the cells' middles, interpolation.
-TEST(MeasuredBRDFInvariant, AModelThroughMERLAndBack) {
+TEST(BRDFMeasuredInvariant, AModelThroughMERLAndBack) {
   const Scratch scratch;
   const auto model = metal(0.3, {450, 550, 650});
   put(scratch / "m", merlFile(model, {60, 45, 40}));  // other sizes, same rules
@@ -424,7 +424,7 @@ TEST(MeasuredBRDFInvariant, AModelThroughMERLAndBack) {
 }
 
 // The sizes of MERL's own files are those that a reader elsewhere expects.
-TEST(MeasuredBRDFPublished, AMERLFileHasTheSizesOfMERL) {
+TEST(BRDFMeasuredPublished, AMERLFileHasTheSizesOfMERL) {
   const auto grid = SpectralGrid::make({550});
   const std::string bytes = merlFile(BRDFDiffuse(CDSpectralVector<double>(grid, 0.5)));
   ASSERT_EQ(bytes.size(), 12 + 8 * 3 * 90 * 90 * 180u);
@@ -433,7 +433,7 @@ TEST(MeasuredBRDFPublished, AMERLFileHasTheSizesOfMERL) {
   EXPECT_EQ(sizes, (std::array<std::int32_t, 3>{90, 90, 180}));
 }
 
-TEST(MeasuredBRDFIdentity, WhatNoSurfaceCouldDoIsCounted) {
+TEST(BRDFMeasuredIdentity, WhatNoSurfaceCouldDoIsCounted) {
   MuellerTable table = tabulate(metal(), 6);
   const TableReport good = examine(table);
   EXPECT_EQ(good.unrealizable, 0u);
@@ -451,7 +451,7 @@ TEST(MeasuredBRDFIdentity, WhatNoSurfaceCouldDoIsCounted) {
 }
 
 // Unknown corners leave their weight to the others; where nothing is known, nothing is scattered.
-TEST(MeasuredBRDFIdentity, UnknownNodes) {
+TEST(BRDFMeasuredIdentity, UnknownNodes) {
   const Scratch scratch;
   const std::string head = "theta_h_deg,theta_d_deg,phi_d_deg,wavelength_nm,f00\n";
   const BRDFMeasured model =
@@ -471,7 +471,7 @@ TEST(MeasuredBRDFIdentity, UnknownNodes) {
   EXPECT_EQ(f(21, 0), 0);
 }
 
-TEST(MeasuredBRDFIdentity, BrokenTextIsRefused) {
+TEST(BRDFMeasuredIdentity, BrokenTextIsRefused) {
   const Scratch scratch;
   const std::string head = "theta_h_deg,theta_d_deg,phi_d_deg,wavelength_nm,f00\n";
   for (const auto& [rows, problem] :

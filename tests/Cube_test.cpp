@@ -57,7 +57,7 @@ int python(const std::string& program, const std::filesystem::path& path) {
 }
 }  // namespace
 
-TEST(ImageIdentity, ComesBackAsItWasWritten) {
+TEST(CubeIdentity, ComesBackAsItWasWritten) {
   const Scratch scratch;
   writeAll(scratch / "x.img");
   const Cube cube = readCube(scratch / "x.img");
@@ -77,7 +77,7 @@ CubeHeader inOrder(Interleave order) {
 }
 }  // namespace
 
-TEST(ImageIdentity, TheOrderOfTheFileIsNotThatOfTheMemory) {
+TEST(CubeIdentity, TheOrderOfTheFileIsNotThatOfTheMemory) {
   const Scratch scratch;
   writeAll(scratch / "x.img");
   const Cube cube = readCube(scratch / "x.img");
@@ -92,7 +92,7 @@ TEST(ImageIdentity, TheOrderOfTheFileIsNotThatOfTheMemory) {
   EXPECT_FALSE(interleaveOf("BSQ?"));
 }
 
-TEST(ImageInvariant, ACubeOfAnotherOrderIsResumedToo) {
+TEST(CubeInvariant, ACubeOfAnotherOrderIsResumedToo) {
   const Scratch scratch;
   for (const Interleave order : {Interleave::bil, Interleave::bsq}) {
     const CubeHeader as = inOrder(order);
@@ -108,7 +108,7 @@ TEST(ImageInvariant, ACubeOfAnotherOrderIsResumedToo) {
 }
 
 // What a user calls a file must not end a value of the header.
-TEST(ImageIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
+TEST(CubeIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
   const Scratch scratch;
   CubeHeader odd = header;
   odd.description = "scene a}\nbands = 1\n{b";
@@ -120,7 +120,7 @@ TEST(ImageIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
   EXPECT_TRUE(again.finished(tiles[0]));  // the header is known again
 }
 
-TEST(ImageIdentity, TimePlaceAndIgnoreValueComeBack) {
+TEST(CubeIdentity, TimePlaceAndIgnoreValueComeBack) {
   const Scratch scratch;
   CubeHeader full = header;
   full.acquisition_time = "2001-06-10T17:06:00Z";
@@ -131,7 +131,7 @@ TEST(ImageIdentity, TimePlaceAndIgnoreValueComeBack) {
 }
 
 // 400 000 wavelengths, one a line: as long as the list, not as its square, or this test never ends.
-TEST(ImageIdentity, ALongListMayHaveManyLines) {
+TEST(CubeIdentity, ALongListMayHaveManyLines) {
   const Scratch scratch;
   constexpr std::size_t many = 400000;
   std::string text =
@@ -144,7 +144,7 @@ TEST(ImageIdentity, ALongListMayHaveManyLines) {
   EXPECT_EQ(readCube(scratch / "x.img").header.wavelength_nm.size(), many);
 }
 
-TEST(ImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
+TEST(CubeInvariant, AnInterruptedCubeEndsInTheSameBits) {
   const Scratch scratch;
   writeAll(scratch / "whole.img");
   {
@@ -169,7 +169,7 @@ TEST(ImageInvariant, AnInterruptedCubeEndsInTheSameBits) {
   EXPECT_EQ(contents(scratch / "x.img"), contents(scratch / "whole.img"));
 }
 
-TEST(ImageIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
+TEST(CubeIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
   const Scratch scratch;
   writeAll(scratch / "x.img", header, true);
   const std::string before = contents(scratch / "x.img");
@@ -187,7 +187,7 @@ TEST(ImageIdentity, AWholeCubeOfTheSameHeaderIsLeftAsItIs) {
   EXPECT_FALSE(CubeWriter(scratch / "x.img", other, true).finished(tiles[1]));
 }
 
-TEST(ImageIdentity, AnotherCubeIsNotGoneOnWith) {
+TEST(CubeIdentity, AnotherCubeIsNotGoneOnWith) {
   const Scratch scratch;
   { CubeWriter writer(scratch / "x.img", header); }
   CubeHeader other = header;
@@ -197,7 +197,7 @@ TEST(ImageIdentity, AnotherCubeIsNotGoneOnWith) {
   EXPECT_THROW(CubeWriter("/dev/null/x.img", header), InputError);
 }
 
-TEST(ImageIdentity, BadCubesAreNamed) {
+TEST(CubeIdentity, BadCubesAreNamed) {
   const Scratch scratch;
   EXPECT_NE(complaint(scratch / "none.img").find("is not there"), std::string::npos);
   writeAll(scratch / "x.img");
@@ -231,7 +231,7 @@ TEST(ImageIdentity, BadCubesAreNamed) {
 }
 
 // One wavelength a line, as many programs write them; each line is looked at once.
-TEST(ImageIdentity, AHeaderOfManyLinesIsRead) {
+TEST(CubeIdentity, AHeaderOfManyLinesIsRead) {
   const Scratch scratch;
   constexpr int wavelengths = 100'000;
   std::string text = fmt::format(
@@ -249,7 +249,7 @@ TEST(ImageIdentity, AHeaderOfManyLinesIsRead) {
 }
 
 // Other people's readers: GDAL and Spectral Python, as Debian ships them.
-TEST(ImagePublished, GdalReadsNamesWavelengthsAndNumbers) {
+TEST(CubePublished, GdalReadsNamesWavelengthsAndNumbers) {
   const Scratch scratch;
   for (const Interleave order : {Interleave::bip, Interleave::bil, Interleave::bsq}) {
     writeAll(scratch / "x.img", inOrder(order));
@@ -266,7 +266,7 @@ TEST(ImagePublished, GdalReadsNamesWavelengthsAndNumbers) {
   }
 }
 
-TEST(ImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
+TEST(CubePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
   const Scratch scratch;
   writeAll(scratch / "x.img");
   const std::string program =
@@ -283,7 +283,7 @@ TEST(ImagePublished, SpectralPythonReadsNamesWavelengthsAndNumbers) {
   EXPECT_NE(python(program + "230\n", scratch / "x.img"), 0);  // the negative control
 }
 
-TEST(ImagePublished, SpectralExrHasTheNamesOfItsConvention) {
+TEST(CubePublished, SpectralExrHasTheNamesOfItsConvention) {
   const Scratch scratch;
   writeAll(scratch / "x.img");
   writeSpectralEXR(readCube(scratch / "x.img"), scratch / "x.exr");
@@ -301,7 +301,7 @@ TEST(ImagePublished, SpectralExrHasTheNamesOfItsConvention) {
 }
 
 // Named bands, two of them with one centre: an attribute, and a layer for the second.
-TEST(ImageIdentity, NamesOfBandsAreInTheSpectralPicture) {
+TEST(CubeIdentity, NamesOfBandsAreInTheSpectralPicture) {
   const Scratch scratch;
   const auto named = SpectralGrid::bands(
       {CDSpectralLocation(550.0), CDSpectralLocation(550, BandResponse::gaussian(200)),

@@ -58,7 +58,7 @@ double pValueOfUniformity(const std::vector<SamplePoint>& points) {
 }  // namespace
 
 // Salmon et al. 2011, the file kat_vectors of Random123: philox4x64, ten rounds.
-TEST(BRDFSamplingPublished, PhiloxGivesItsKnownAnswers) {
+TEST(DirectionSamplingPublished, PhiloxGivesItsKnownAnswers) {
   Random zeros(0);
   EXPECT_EQ(zeros(), 0x16554d9eca36314cULL);
   EXPECT_EQ(zeros(), 0xdb20fe9d672d0fdcULL);
@@ -67,7 +67,7 @@ TEST(BRDFSamplingPublished, PhiloxGivesItsKnownAnswers) {
   EXPECT_NE(Random(1)(), 0x16554d9eca36314cULL);  // negative control: another key
 }
 
-TEST(BRDFSamplingIdentity, StreamsDifferInEveryKeyAndRepeatWhenKeyedAlike) {
+TEST(DirectionSamplingIdentity, StreamsDifferInEveryKeyAndRepeatWhenKeyedAlike) {
   std::set<std::uint64_t> first;
   for (std::uint64_t i = 0; i < 5; ++i)
     first.insert(Random(i == 0, i == 1, i == 2, i == 3, i == 4)());
@@ -76,7 +76,7 @@ TEST(BRDFSamplingIdentity, StreamsDifferInEveryKeyAndRepeatWhenKeyedAlike) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(a(), b());
 }
 
-TEST(BRDFSamplingInvariant, UniformNumbersAreUniformIn0To1) {
+TEST(DirectionSamplingInvariant, UniformNumbersAreUniformIn0To1) {
   Random random(11);
   std::vector<std::size_t> counts(100);
   for (int i = 0; i < 1000000; ++i) {
@@ -89,7 +89,7 @@ TEST(BRDFSamplingInvariant, UniformNumbersAreUniformIn0To1) {
             false_alarm);
 }
 
-RC_GTEST_PROP(BRDFSamplingInvariant, SolidAnglesSumToThoseOfTheCone, ()) {
+RC_GTEST_PROP(DirectionSamplingInvariant, SolidAnglesSumToThoseOfTheCone, ()) {
   const auto a = *rc::gen::inRange<std::size_t>(1, 40),
              z = *rc::gen::inRange<std::size_t>(1, 40);
   const double max = 0.5 * pi * *rc::gen::inRange(1, 1001) / 1000;
@@ -108,7 +108,7 @@ RC_GTEST_PROP(BRDFSamplingInvariant, SolidAnglesSumToThoseOfTheCone, ()) {
             roundingOfSum(a * z + 32, expected) + 1.5e-15);
 }
 
-RC_GTEST_PROP(BRDFSamplingInvariant, PointsStayInTheConeAndInTheirCells, ()) {
+RC_GTEST_PROP(DirectionSamplingInvariant, PointsStayInTheConeAndInTheirCells, ()) {
   const auto a = *rc::gen::inRange<std::size_t>(1, 20),
              z = *rc::gen::inRange<std::size_t>(1, 20);
   const double max = 0.5 * pi * *rc::gen::inRange(1, 1001) / 1000;
@@ -128,7 +128,7 @@ RC_GTEST_PROP(BRDFSamplingInvariant, PointsStayInTheConeAndInTheirCells, ()) {
     RC_ASSERT(p.zenith_rad > 0 && p.zenith_rad <= max && p.azimuth_rad < 2 * pi);
 }
 
-TEST(BRDFSamplingIdentity, TheExampleWorkedByHandInTheChapter) {
+TEST(DirectionSamplingIdentity, TheExampleWorkedByHandInTheChapter) {
   const auto grid = uniformGridSampling(4, 2, pi / 2);
   ASSERT_EQ(grid.size(), 8u);
   for (int i = 0; i < 4; ++i) {  // tolerance: a few ulp of 1
@@ -139,7 +139,7 @@ TEST(BRDFSamplingIdentity, TheExampleWorkedByHandInTheChapter) {
   }
 }
 
-TEST(BRDFSamplingIdentity, DeviationsAreTriangular) {
+TEST(DirectionSamplingIdentity, DeviationsAreTriangular) {
   Random random(5);
   // four cells of width max/4; count where in the 16 parts of a cell the zenith falls
   std::vector<std::size_t> counts(16);
@@ -157,7 +157,7 @@ TEST(BRDFSamplingIdentity, DeviationsAreTriangular) {
   EXPECT_LT(draw(0.9), false_alarm);  // negative control: narrower triangles
 }
 
-TEST(BRDFSamplingInvariant, RandomDirectionsAreUniformOverTheSolidAngle) {
+TEST(DirectionSamplingInvariant, RandomDirectionsAreUniformOverTheSolidAngle) {
   Random random(2002);
   EXPECT_GT(pValueOfUniformity(randomSampling(100000, pi / 2, random, SolidAngle::equal,
                                               ZenithDraw::uniformSolidAngle)),
@@ -172,7 +172,7 @@ TEST(BRDFSamplingInvariant, RandomDirectionsAreUniformOverTheSolidAngle) {
 // (1 - 0.999^2 of them where the solid angle is uniform, a thousandth where the angle is), none beyond
 // it. The mean cosine of uniform solid angles is (1 + cos max) / 2 with the standard deviation
 // (1 - cos max) / sqrt(12); that of uniform angles sin(max) / max. Six standard errors.
-TEST(BRDFSamplingInvariant, RandomDirectionsFillTheConeToItsEdge) {
+TEST(DirectionSamplingInvariant, RandomDirectionsFillTheConeToItsEdge) {
   constexpr std::size_t count = 20000;
   for (const double max : {0.05, 0.3, 1.0, pi / 2})
     for (const auto draw : {ZenithDraw::uniformAngle, ZenithDraw::uniformSolidAngle}) {
@@ -200,7 +200,7 @@ TEST(BRDFSamplingInvariant, RandomDirectionsFillTheConeToItsEdge) {
     }
 }
 
-TEST(BRDFSamplingIdentity, EqualSolidAnglesAreBiasedWhenZenithsAreUniformInAngle) {
+TEST(DirectionSamplingIdentity, EqualSolidAnglesAreBiasedWhenZenithsAreUniformInAngle) {
   Random random(6);
   const std::size_t n = 100000;
   const auto sum = [&](SolidAngle solid_angle, ZenithDraw draw) {
@@ -217,7 +217,7 @@ TEST(BRDFSamplingIdentity, EqualSolidAnglesAreBiasedWhenZenithsAreUniformInAngle
   EXPECT_NEAR(sum(SolidAngle::exact, ZenithDraw::uniformAngle), pi, 5 * ratio);
 }
 
-TEST(BRDFSamplingIdentity, NoiseOfRandomDirectionsFallsAsTheRootOf3N) {
+TEST(DirectionSamplingIdentity, NoiseOfRandomDirectionsFallsAsTheRootOf3N) {
   for (const std::size_t n : {10, 100, 1000}) {
     double squares = 0;
     const int runs = 4000;
@@ -236,7 +236,7 @@ TEST(BRDFSamplingIdentity, NoiseOfRandomDirectionsFallsAsTheRootOf3N) {
   }
 }
 
-TEST(BRDFSamplingIdentity, AdaptiveGrowsByEightAndKeepsTheMiddle) {
+TEST(DirectionSamplingIdentity, AdaptiveGrowsByEightAndKeepsTheMiddle) {
   const DirectionScore peak = [](double zenith, double azimuth) {
     const double x = std::sin(zenith) * std::cos(azimuth) + 0.5,
                  y = std::sin(zenith) * std::sin(azimuth);
@@ -260,7 +260,8 @@ TEST(BRDFSamplingIdentity, AdaptiveGrowsByEightAndKeepsTheMiddle) {
   EXPECT_LT(second[12].solid_angle_sr, first[12].solid_angle_sr / 8);
 }
 
-TEST(BRDFSamplingInvariant, AdaptiveGathersAtThePeakAndIntegratesANarrowLobeBetterThanTheGrid) {
+TEST(DirectionSamplingInvariant,
+     AdaptiveGathersAtThePeakAndIntegratesANarrowLobeBetterThanTheGrid) {
   const double width = 0.02;
   const DirectionScore lobe = [&](double zenith,
                                   double azimuth) {  // integral 2 pi w^2, closely
@@ -289,7 +290,7 @@ TEST(BRDFSamplingInvariant, AdaptiveGathersAtThePeakAndIntegratesANarrowLobeBett
 
 // The weakness that the chapter tells of: a lobe narrower than a cell, centred on an edge of
 // the grid.
-TEST(BRDFSamplingIdentity, AdaptiveSeesHalfOfANarrowLobeOnAnEdge) {
+TEST(DirectionSamplingIdentity, AdaptiveSeesHalfOfANarrowLobeOnAnEdge) {
   const DirectionScore lobe = [](double zenith, double azimuth) {
     const double t = (zenith - pi / 6) / 0.02, a = (azimuth - pi) / 0.02;
     return std::exp(-(t * t + a * a) / 2) / std::sin(zenith) / (2 * pi * 0.02 * 0.02);
@@ -298,7 +299,7 @@ TEST(BRDFSamplingIdentity, AdaptiveSeesHalfOfANarrowLobeOnAnEdge) {
   EXPECT_NEAR(integral(adaptiveSampling(lobe, 800, pi / 2), lobe), 0.5, 0.03);
 }
 
-TEST(BRDFSamplingIdentity, ImpossibleSamplingsAreRefused) {
+TEST(DirectionSamplingIdentity, ImpossibleSamplingsAreRefused) {
   Random random(1);
   for (const double max : {0.0, -1.0, 1.6, not_a_number}) {
     EXPECT_THROW(randomSampling(5, max, random), MathError);

@@ -27,7 +27,7 @@ std::set<std::string> namesIn(const std::filesystem::path& directory) {
 }
 }  // namespace
 
-TEST(FormatsIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
+TEST(FormatRegistryIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
   const Scratch scratch;
   put(scratch / "s.json", small_scene);
   const FrameShape shape{8, 6, 3, {0, 1, 2, 3}};
@@ -50,7 +50,7 @@ TEST(FormatsIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
   EXPECT_EQ(chosenFormats("exr", {}).size(), 2u);  // and the cube
 }
 
-TEST(FormatsIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
+TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   const Scratch scratch;
   put(scratch / "s.json", small_scene);
   const Outcome unknown = malusIn(scratch.path, "render s.json --out o --formats exr,pgn");
@@ -65,7 +65,7 @@ TEST(FormatsIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
 }
 
-TEST(FormatsInvariant, EachFormatIsInTheHelp) {
+TEST(FormatRegistryInvariant, EachFormatIsInTheHelp) {
   const std::string help = malusIn(".", "render --help").out;
   for (const OutputFormat& format : outputFormats())
     if (!format.always) {

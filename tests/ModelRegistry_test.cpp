@@ -53,7 +53,7 @@ constexpr double polarized = 1e-3, irreciprocal = 1e-6, above_one = 1e-6;
 }  // namespace
 
 // At the example, and where there is one, at the witness of what is not promised.
-TEST(ModelsInvariant, EveryPromiseIsKeptAtTheExample) {
+TEST(ModelRegistryInvariant, EveryPromiseIsKeptAtTheExample) {
   for (const ModelEntry& entry : modelEntries()) {
     const auto model = example(entry);
     const ModelTraits& traits = entry.traits;
@@ -155,7 +155,7 @@ double interpolation(const ModelEntry& entry) {
 }  // namespace
 
 // Whatever a user may ask for, corners included. What has no parameters but a file is as good as that.
-TEST(ModelsInvariant, EveryPromiseIsKeptWithAllParameters) {
+TEST(ModelRegistryInvariant, EveryPromiseIsKeptWithAllParameters) {
   for (const ModelEntry& entry : modelEntries()) {
     if (std::any_of(entry.parameters.begin(), entry.parameters.end(),
                     [](const Parameter& p) { return p.file; }))
@@ -197,7 +197,7 @@ TEST(ModelsInvariant, EveryPromiseIsKeptWithAllParameters) {
 }
 
 // The alternatives are read as they are meant, and each names words that the model has.
-TEST(ModelsIdentity, SettingsOfAPromiseAreSettingsOfTheModel) {
+TEST(ModelRegistryIdentity, SettingsOfAPromiseAreSettingsOfTheModel) {
   EXPECT_TRUE(among({{"a", "1"}, {"b", "2"}}, "a=3 or a=1 b=2"));
   EXPECT_FALSE(among({{"a", "1"}, {"b", "3"}}, "a=3 or a=1 b=2"));
   EXPECT_FALSE(among({{"a", "1"}}, "") || among({}, "a file that does"));
@@ -213,7 +213,7 @@ TEST(ModelsIdentity, SettingsOfAPromiseAreSettingsOfTheModel) {
 }
 
 // Each promise is kept by some models and not made by others, so none of the comparisons above is idle.
-TEST(ModelsInvariant, NegativeControlEachPromiseIsMadeAndNotMade) {
+TEST(ModelRegistryInvariant, NegativeControlEachPromiseIsMadeAndNotMade) {
   std::array<std::set<bool>, 4> seen;
   for (const ModelEntry& entry : modelEntries()) {
     const ModelTraits& t = entry.traits;
@@ -224,7 +224,7 @@ TEST(ModelsInvariant, NegativeControlEachPromiseIsMadeAndNotMade) {
   for (const auto& answers : seen) EXPECT_EQ(answers.size(), 2u);
 }
 
-TEST(ModelsIdentity, EveryModelSaysWhatItIsFor) {
+TEST(ModelRegistryIdentity, EveryModelSaysWhatItIsFor) {
   std::set<std::string> names;
   for (const ModelEntry& entry : modelEntries()) {
     EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
@@ -243,7 +243,7 @@ TEST(ModelsIdentity, EveryModelSaysWhatItIsFor) {
 }
 
 // The model of the thesis becomes reciprocal with another diffuse term, as the chapter says.
-TEST(ModelsIdentity, AnotherDiffuseTermIsReciprocal) {
+TEST(ModelRegistryIdentity, AnotherDiffuseTermIsReciprocal) {
   ModelEntry entry = modelEntry("torrance-sparrow", {});
   EXPECT_FALSE(entry.traits.reciprocal);
   entry.traits.example += " diffuse=reciprocal";

@@ -33,7 +33,7 @@ BRDFLayeredPaint paint(double binder, const std::vector<PaintLayer>& layers, dou
 }  // namespace
 
 // A binder of air has no face: the light of chapter AddingDoubling must come out, at nodes of the table.
-TEST(PigmentLightInvariant, WithoutAFaceItIsLayeredLight) {
+TEST(PaintScatteringInvariant, WithoutAFaceItIsAddingDoubling) {
   const std::vector<PaintLayer> layers{coat(1.5, 0.01, 0.8), coat(1.8, 0, 1.5, 0.1, 200)};
   const BRDFLayeredPaint body = paint(1, layers, 0.3, 0, 24);
   std::vector<AirLayer> air;
@@ -64,7 +64,7 @@ TEST(PigmentLightInvariant, WithoutAFaceItIsLayeredLight) {
 
 // A thin coat on black scatters once: the grains' own matrix between the directions inside, for light of four
 // polarisations, passed by the face on both ways.
-TEST(PigmentLightIdentity, AThinCoatScattersOnceInAllSixteenElements) {
+TEST(PaintScatteringIdentity, AThinCoatScattersOnceInAllSixteenElements) {
   const double n = 1.5;
   const PaintLayer thin = coat(2.4, 0.45, 1e-4, 0.1, 150, 1);
   const MiePowder powder = miePowder(2.4 / n, 0.45 / n, {150, 1}, 550 / n);
@@ -111,7 +111,7 @@ TEST(PigmentLightIdentity, AThinCoatScattersOnceInAllSixteenElements) {
 }
 
 // No absorption, all light returned by the ground or by depth: what enters comes out.
-TEST(PigmentLightInvariant, AWhiteBodyReturnsWhatEnters) {
+TEST(PaintScatteringInvariant, AWhiteBodyReturnsWhatEnters) {
   const BRDFLayeredPaint over_white = paint(1.5, {coat(2.75, 0, 20)}, 1),
                          rough = paint(1.5, {coat(2.75, 0, 20)}, 1, 0.3);
   const PaintSurface face(flat(1.5), {}, 0), rough_face(flat(1.5), {}, 0.3);
@@ -135,7 +135,7 @@ TEST(PigmentLightInvariant, AWhiteBodyReturnsWhatEnters) {
   EXPECT_NEAR(d100 / d1000, 10, 1.5);
 }
 
-TEST(PigmentLightInvariant, ThickerIsWhiterAndStreamsDoNotMatter) {
+TEST(PaintScatteringInvariant, ThickerIsWhiterAndStreamsDoNotMatter) {
   double before = 0;
   for (const double um : {0.0, 1.0, 3.0, 10.0, 30.0}) {
     const double dhr = paint(1.5, {coat(2.75, 0, um)}, 0).getVolumeDHR(0.8)[0];
@@ -152,7 +152,7 @@ TEST(PigmentLightInvariant, ThickerIsWhiterAndStreamsDoNotMatter) {
 }
 
 // Views a hair to both sides of the normal are the same view: odd harmonics must vanish there like the sine.
-TEST(PigmentLightIdentity, NothingJumpsAcrossTheNormal) {
+TEST(PaintScatteringIdentity, NothingJumpsAcrossTheNormal) {
   const BRDFLayeredPaint dark = paint(1.5, {coat(1.8, 0.4, 50)}, 0);
   const auto at = [&](double degrees) {
     const auto g = BRDFGeometry::fromDegrees(45, std::abs(degrees), degrees < 0 ? 0 : 180);
@@ -166,7 +166,7 @@ TEST(PigmentLightIdentity, NothingJumpsAcrossTheNormal) {
 }
 
 // Large grains, whose forward peak wants many streams: still no light lost or made.
-TEST(PigmentLightInvariant, LargeGrainsKeepEnergyToo) {
+TEST(PaintScatteringInvariant, LargeGrainsKeepEnergyToo) {
   const BRDFLayeredPaint large = paint(1.5, {coat(1.7, 0, 10, 0.15, 500, 1.2)}, 1);
   const PaintSurface face(flat(1.5), {}, 0);
   for (const double cosine : {0.3, 0.8, 1.0})
@@ -175,7 +175,7 @@ TEST(PigmentLightInvariant, LargeGrainsKeepEnergyToo) {
         << cosine;
 }
 
-TEST(PigmentLightIdentity, ImpossibleRecipesAreRefused) {
+TEST(PaintScatteringIdentity, ImpossibleRecipesAreRefused) {
   EXPECT_THROW(paint(1.5, {coat(2.75, 0, -1)}, 0), MathError);
   EXPECT_THROW(paint(1.5, {coat(2.75, 0, 1, 0.6)}, 0), MathError);
   EXPECT_THROW(paint(1.5, {coat(2.75, -0.1, 1)}, 0), MathError);

@@ -195,7 +195,7 @@ TEST(RayleighSkyIdentity, BelowTheHorizonLiesTheGround) {
 // From above the atmosphere down to the ground the haze gives the light that goes up at the top: the
 // same integral, with Gauss's rule over an exponential of height. A scale height of 1 m makes 60 m
 // outer space. Thin paths are summed exactly; here the whole atmosphere is one path, in pieces.
-TEST(RayleighHazeInvariant, TheWholeAtmosphereIsAPath) {
+TEST(RayleighSkyPathRadianceInvariant, TheWholeAtmosphereIsAPath) {
   const auto sky =
       std::make_shared<RayleighSky>(sunFrom(40, 90), RayleighSky::clearAir(grid, 0.3));
   const RayleighPathRadiance haze(sky, 0, 1);
@@ -221,7 +221,7 @@ TEST(RayleighHazeInvariant, TheWholeAtmosphereIsAPath) {
 }
 
 // A hundred metres of air in one piece or in ten; up, down and level; nothing on a path of no length.
-TEST(RayleighHazeInvariant, PathsCompose) {
+TEST(RayleighSkyPathRadianceInvariant, PathsCompose) {
   const auto sky =
       std::make_shared<RayleighSky>(sunFrom(40, 90), RayleighSky::clearAir(grid, 0.3));
   const RayleighPathRadiance haze(sky);

@@ -20,7 +20,7 @@ RingLobe uniformCone(double reach) {
 }  // namespace
 
 // All rings of a uniform lobe have the density 1/(2 pi (1 - cos reach)).
-TEST(LobesIdentity, AUniformLobeIsUniform) {
+TEST(RingLobeIdentity, AUniformLobeIsUniform) {
   for (const double reach : {0.01, 1.0, pi}) {
     const RingLobe lobe = uniformCone(reach);
     const double expected = 1 / (4 * pi * std::pow(std::sin(reach / 2), 2));
@@ -40,7 +40,7 @@ TEST(LobesIdentity, AUniformLobeIsUniform) {
   }
 }
 
-TEST(LobesInvariant, ADensityIntegratesToOne) {
+TEST(RingLobeInvariant, ADensityIntegratesToOne) {
   const RingLobe lobe([](double x) { return std::pow(std::sin(x / 2), 4); }, pi);
   const CDVector axis{0, 0, 1};
   double sum = 0;
@@ -52,7 +52,7 @@ TEST(LobesInvariant, ADensityIntegratesToOne) {
   EXPECT_NEAR(sum, 1, 1e-3);  // 63 jumps, each off by up to half a step
 }
 
-TEST(LobesIdentity, TheChoiceReusesItsRandomNumber) {
+TEST(RingLobeIdentity, TheChoiceReusesItsRandomNumber) {
   const auto other = [](double, double, double v3) {
     EXPECT_GE(v3, 0);
     EXPECT_LT(v3, 1);

@@ -64,7 +64,7 @@ double largestDifference(const CDMuellerMatrix& a, const CDMuellerMatrix& b) {
 }  // namespace
 
 // The definition: the source turned by -phi_h about z, then by -theta_h about the binormal.
-TEST(RusinkiewiczPublished, TheDefinition) {
+TEST(RusinkiewiczAnglesPublished, TheDefinition) {
   for (const Drawn3& a : drawn(1000, 1.57)) {
     const double phi_i = 1.234;
     const CDVector i = CDVector::fromAngles(a.theta_i, phi_i),
@@ -82,7 +82,7 @@ TEST(RusinkiewiczPublished, TheDefinition) {
   }
 }
 
-TEST(RusinkiewiczIdentity, ThePlateOfSection71) {
+TEST(RusinkiewiczAnglesIdentity, ThePlateOfSection71) {
   const auto a = halfDifference(BRDFGeometry::fromDegrees(30, 40, 180));
   EXPECT_NEAR(a.getThetaH(), 5 * degree, 1e-15);
   EXPECT_NEAR(a.getThetaD(), 35 * degree, 1e-15);
@@ -93,7 +93,7 @@ TEST(RusinkiewiczIdentity, ThePlateOfSection71) {
   EXPECT_EQ(mirror.getPhiD(), 0);
 }
 
-TEST(RusinkiewiczIdentity, ThereAndBack) {
+TEST(RusinkiewiczAnglesIdentity, ThereAndBack) {
   for (const Drawn3& a : drawn(1000, 1.5707)) {
     const auto g = BRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi);
     const auto back = brdfGeometry(halfDifference(g));
@@ -106,7 +106,7 @@ TEST(RusinkiewiczIdentity, ThereAndBack) {
   }
 }
 
-TEST(RusinkiewiczIdentity, ExchangeAddsHalfATurn) {
+TEST(RusinkiewiczAnglesIdentity, ExchangeAddsHalfATurn) {
   for (const Drawn3& a : drawn(200, 1.5)) {
     const auto there = halfDifference(BRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi));
     const auto back = halfDifference(BRDFGeometry::fromAngles(a.theta_r, a.theta_i, -a.phi));
@@ -116,7 +116,7 @@ TEST(RusinkiewiczIdentity, ExchangeAddsHalfATurn) {
   }
 }
 
-TEST(RusinkiewiczIdentity, FacetsAreBlocksInTheirOwnAxes) {
+TEST(RusinkiewiczAnglesIdentity, FacetsAreBlocksInTheirOwnAxes) {
   double macroscopic = 0;
   for (const Drawn3& a : drawn(200, 1.5)) {
     const auto g = BRDFGeometry::fromAngles(a.theta_i, a.theta_r, a.phi);
@@ -134,7 +134,7 @@ TEST(RusinkiewiczIdentity, FacetsAreBlocksInTheirOwnAxes) {
 }
 
 // A neutral surface, f = 1, shows the axes themselves: at theta_d = 0 they go on turning with phi_d.
-TEST(RusinkiewiczIdentity, AxesWhereSourceAndViewerMeet) {
+TEST(RusinkiewiczAnglesIdentity, AxesWhereSourceAndViewerMeet) {
   const CDMuellerMatrix neutral(1.0);
   for (double phi_d = 0; phi_d < 6.2; phi_d += 0.3) {
     const auto at = RusinkiewiczAngles::fromAngles(0.7, 0, phi_d),
@@ -149,7 +149,7 @@ TEST(RusinkiewiczIdentity, AxesWhereSourceAndViewerMeet) {
 }
 
 // f(phi_d + pi) = Q f^T Q and f(-phi_d) = P f P in the facet's axes, for light that is neutrally scattered.
-TEST(RusinkiewiczInvariant, SymmetriesOfATable) {
+TEST(RusinkiewiczAnglesInvariant, SymmetriesOfATable) {
   const std::array<double, 4> Q{1, 1, -1, 1}, P{1, 1, -1, -1}, wrong{1, 1, 1, 1};
   const CDMuellerMatrix neutral(1.0);
   double control = 0;

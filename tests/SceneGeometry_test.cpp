@@ -45,7 +45,7 @@ SceneGeometry placed(const Mesh& mesh, const Transform& place) {
 }
 }  // namespace
 
-TEST(GeometryIdentity, ReadsNamesFacesAndRelativeIndices) {
+TEST(SceneGeometryIdentity, ReadsNamesFacesAndRelativeIndices) {
   const Mesh mesh = parsed(square);
   ASSERT_EQ(mesh.triangles.size(), 3u);
   EXPECT_EQ(mesh.facets, (std::vector<std::string>{"box.top", "box.side"}));
@@ -55,7 +55,7 @@ TEST(GeometryIdentity, ReadsNamesFacesAndRelativeIndices) {
   EXPECT_EQ(mesh.triangles[2].facet, 1u);
 }
 
-TEST(GeometryIdentity, BadMeshesNameTheLine) {
+TEST(SceneGeometryIdentity, BadMeshesNameTheLine) {
   EXPECT_EQ(complaint("v 0 0 0\nv 1 nan 0\n").substr(0, 9), "m.obj:2: ");
   EXPECT_NE(complaint("v 0 0 0\nv 1 x 0\n").find("vertex y"), std::string::npos);
   EXPECT_NE(complaint("v 0 0\n").find("vertex z"), std::string::npos);
@@ -85,7 +85,7 @@ const std::string arrow =
     "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 2 0\n";  // the last corner points inwards; area 6
 }  // namespace
 
-TEST(GeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
+TEST(SceneGeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
   for (const std::string face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
     const Shape shape = shapeOf(parsed(arrow + face + "\n"));
     EXPECT_NEAR(shape.area, 6, rounding * 10) << face;
@@ -100,7 +100,7 @@ TEST(GeometryInvariant, PolygonsThatAreNotConvexKeepTheirAreaAndTheirSide) {
       rounding * 10);
 }
 
-TEST(GeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
+TEST(SceneGeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
   std::string star;
   for (int i = 0; i < 10; ++i) {
     const double r = i % 2 ? 0.3 : 1, phi = std::numbers::pi * i / 5;
@@ -112,7 +112,7 @@ TEST(GeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
             "that made the mesh cut it into triangles");
 }
 
-TEST(GeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
+TEST(SceneGeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
   const Scratch scratch;
   EXPECT_THROW(readOBJ(scratch.path), InputError);
   const Mesh mesh = parsed(square);
@@ -122,7 +122,7 @@ TEST(GeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
 }
 
 // The library behind the door takes 3x for 3, 1,5 for 1, and 4294967299 for 3.
-TEST(GeometryIdentity, CornersAreWholeNumbersOf32BitsAndNothingElse) {
+TEST(SceneGeometryIdentity, CornersAreWholeNumbersOf32BitsAndNothingElse) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const std::string bad : {"4294967299", "1,5", "3x", "2147483648", "-9999999999", "1.5",
                                 "3/", "/3", "3//", "3/1/1/1", "0x3", "+3", "3/x", "nan"})
@@ -135,7 +135,7 @@ TEST(GeometryIdentity, CornersAreWholeNumbersOf32BitsAndNothingElse) {
     EXPECT_EQ(complaint(corners + "f 1 2 " + good + "\n"), "none") << good;
 }
 
-TEST(GeometryIdentity, NamesThatNoRecordCouldHoldAreRefusedWithTheirLine) {
+TEST(SceneGeometryIdentity, NamesThatNoRecordCouldHoldAreRefusedWithTheirLine) {
   const std::string rest = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (const std::string keyword : {"g", "o", "usemtl"}) {
     EXPECT_EQ(complaint("# saved as Latin-1\n" + keyword + " Stra\xdf\x65\n" + rest),
@@ -148,7 +148,7 @@ TEST(GeometryIdentity, NamesThatNoRecordCouldHoldAreRefusedWithTheirLine) {
   }
 }
 
-TEST(GeometryIdentity, CoordinatesThatNobodyCouldSquareAreRefusedWithTheirLine) {
+TEST(SceneGeometryIdentity, CoordinatesThatNobodyCouldSquareAreRefusedWithTheirLine) {
   for (const std::string bad : {"1e19", "-2e18", "1e300", "-1e308"})
     EXPECT_NE(complaint("v 0 0 0\nv 1 " + bad + " 0\nv 0 1 0\nf 1 2 3\n")
                   .find("m.obj:2: vertex y = " + bad + ": is beyond 1e18 in any unit"),
@@ -157,7 +157,7 @@ TEST(GeometryIdentity, CoordinatesThatNobodyCouldSquareAreRefusedWithTheirLine) 
 }
 
 // Each face has a group and a material of its own, and each name its own number.
-TEST(GeometryIdentity, AHundredThousandNamesKeepTheirOrder) {
+TEST(SceneGeometryIdentity, AHundredThousandNamesKeepTheirOrder) {
   constexpr std::uint32_t count = 100'000;
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (std::uint32_t i = 0; i < count; ++i)
@@ -172,7 +172,7 @@ TEST(GeometryIdentity, AHundredThousandNamesKeepTheirOrder) {
   EXPECT_EQ(mesh.triangles.back().facet, 7u);
 }
 
-TEST(GeometryIdentity, TransformsComposeInOrder) {
+TEST(SceneGeometryIdentity, TransformsComposeInOrder) {
   const Transform turn = Transform::rotate({0, 0, 1}, std::numbers::pi / 2);
   const Transform move = Transform::translate({10, 0, 0});
   const CDVector p = move.after(turn).apply({1, 0, 0}), q = turn.after(move).apply({1, 0, 0});
@@ -182,7 +182,7 @@ TEST(GeometryIdentity, TransformsComposeInOrder) {
   EXPECT_NEAR(q.y, 11, rounding * 20);
 }
 
-TEST(GeometryInvariant, MirroredMeshesKeepTheirOutside) {
+TEST(SceneGeometryInvariant, MirroredMeshesKeepTheirOutside) {
   const Mesh mesh = parsed(square);
   for (const double sx : {1.0, -1.0}) {
     const SceneGeometry scene = placed(mesh, {{sx, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}});
@@ -190,14 +190,14 @@ TEST(GeometryInvariant, MirroredMeshesKeepTheirOutside) {
   }
 }
 
-TEST(GeometryIdentity, TrianglesWithoutAreaAreCountedAndKeptOut) {
+TEST(SceneGeometryIdentity, TrianglesWithoutAreaAreCountedAndKeptOut) {
   const Mesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\nf 1 1 4\n");
   const SceneGeometry scene = placed(mesh, {});
   EXPECT_EQ(scene.triangles().size(), 1u);
   EXPECT_EQ(scene.degenerateTriangles(), 2u);
 }
 
-TEST(GeometryIdentity, MaterialsAreRenamedByNameOrAllTogether) {
+TEST(SceneGeometryIdentity, MaterialsAreRenamedByNameOrAllTogether) {
   GeometryBuilder builder;
   builder.addMesh(parsed(square), {}, "a.", {{"red", "copper"}});
   builder.addMesh(parsed(square), Transform::translate({5, 0, 0}), "b.", {{"*", "soil"}});
@@ -212,7 +212,7 @@ TEST(GeometryIdentity, MaterialsAreRenamedByNameOrAllTogether) {
 
 // Rodrigues by what defines it: the axis stays, what is perpendicular to it turns by the angle to the
 // left, and volumes stay. The axis need not be a unit vector.
-TEST(GeometryIdentity, ARotationTurnsAboutItsAxis) {
+TEST(SceneGeometryIdentity, ARotationTurnsAboutItsAxis) {
   const CDVector axis{1, -2, 2}, across{2, 2, 1};  // 3 long, and perpendicular
   for (const double angle : {0.3, 2.0, -1.1}) {
     const Transform turn = Transform::rotate(axis, angle);
@@ -225,7 +225,7 @@ TEST(GeometryIdentity, ARotationTurnsAboutItsAxis) {
   EXPECT_THROW(Transform::rotate({}, 1), MathError);
 }
 
-TEST(GeometryIdentity, AScaleIsOfAllAxes) {
+TEST(SceneGeometryIdentity, AScaleIsOfAllAxes) {
   const CDVector p = Transform::scale(3).apply({1, 2, -5});
   EXPECT_EQ(p.x, 3);
   EXPECT_EQ(p.y, 6);
@@ -238,14 +238,14 @@ TEST(GeometryIdentity, AScaleIsOfAllAxes) {
 }
 
 // A mirror image by any scale below zero, and a turned one that is none.
-TEST(GeometryInvariant, OnlyMirrorImagesExchangeCorners) {
+TEST(SceneGeometryInvariant, OnlyMirrorImagesExchangeCorners) {
   const Mesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_EQ(placed(mesh, Transform::scale(-1)).triangles()[0].b, 2u);
   EXPECT_EQ(placed(mesh, Transform::rotate({1, 0, 0}, 3)).triangles()[0].b, 1u);
 }
 
 // The world ends at 1e9 m on each axis and side, and not before.
-TEST(GeometryIdentity, TheWorldEndsAtAThousandMillionMetres) {
+TEST(SceneGeometryIdentity, TheWorldEndsAtAThousandMillionMetres) {
   const Mesh mesh = parsed("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   for (const double far : {0.999999e9, -0.999999e9})
     for (const CDVector& to : {CDVector{far, 0, 0}, CDVector{0, far, 0}, CDVector{0, 0, far}})
@@ -257,7 +257,7 @@ TEST(GeometryIdentity, TheWorldEndsAtAThousandMillionMetres) {
 }
 
 // A triangle as flat as 1e-12 of its longest side, whichever side that is and whatever the unit.
-TEST(GeometryIdentity, WithoutAreaMeansFlatAgainstTheLongestSide) {
+TEST(SceneGeometryIdentity, WithoutAreaMeansFlatAgainstTheLongestSide) {
   const auto kept = [](double height, int first, double unit) {
     Mesh mesh;
     mesh.facets = {"a"}, mesh.materials = {"b"};
@@ -276,7 +276,7 @@ TEST(GeometryIdentity, WithoutAreaMeansFlatAgainstTheLongestSide) {
     }
 }
 
-TEST(GeometryIdentity, FacetsAndMaterialsWithoutANameHaveOne) {
+TEST(SceneGeometryIdentity, FacetsAndMaterialsWithoutANameHaveOne) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const Mesh mesh =
       parsed(corners + "f 1 2 3\ng side\nf 1 2 3\no box\nf 1 2 3\ng top\nf 1 2 3\n");
@@ -291,7 +291,7 @@ TEST(GeometryIdentity, FacetsAndMaterialsWithoutANameHaveOne) {
 
 // Normals of corners count if they are more than a degree off, whatever their length; those of no
 // length or that are not there do not. The square is not a triangle, so that its normal is a sum.
-TEST(GeometryIdentity, NormalsMoreThanADegreeOffAreCounted) {
+TEST(SceneGeometryIdentity, NormalsMoreThanADegreeOffAreCounted) {
   const auto ignored = [](double degrees, const std::string& corners) {
     const double angle = degrees * std::numbers::pi / 180;
     return parsed(fmt::format("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvn 0 0 0\nvn {} 0 {}\n",
@@ -307,7 +307,7 @@ TEST(GeometryIdentity, NormalsMoreThanADegreeOffAreCounted) {
 }
 
 // The normal of an arrowhead is that of its area, 1/2, though most of it lies on the other side of its first edge.
-TEST(GeometryIdentity, NormalsOfAnArrowheadAreComparedWithThatOfItsArea) {
+TEST(SceneGeometryIdentity, NormalsOfAnArrowheadAreComparedWithThatOfItsArea) {
   const auto ignored = [](int z) {
     return parsed(fmt::format("v 0 2 0\nv 1.5 1 0\nv 0 0 0\nv 2 1 0\nvn 0 0 {}\n"
                               "f 1//1 2//1 3//1 4//1\n",
@@ -319,7 +319,7 @@ TEST(GeometryIdentity, NormalsOfAnArrowheadAreComparedWithThatOfItsArea) {
 }
 
 // A corner that is a hair inside is one within rounding, and the first corner stays the tip.
-TEST(GeometryIdentity, AConvexPolygonIsCutFromItsFirstCorner) {
+TEST(SceneGeometryIdentity, AConvexPolygonIsCutFromItsFirstCorner) {
   const Mesh mesh = parsed("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n");
   ASSERT_EQ(mesh.triangles.size(), 3u);
   for (std::uint32_t i = 0; i < 3; ++i) {

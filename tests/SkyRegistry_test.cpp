@@ -51,7 +51,7 @@ Example exampleOf(const SkyEntry& entry) {
 }  // namespace
 
 // The scene's clear sky is tabulated: 1e-5 (RayleighSky_test).
-TEST(SkiesIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
+TEST(SkyRegistryIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
   const Scratch scratch;
   ASSERT_EQ(malusIn(scratch.path,
                     "sky --wavelength-nm 450 --mu0 0.5 --dome-step-deg 10 --out sky.csv")
@@ -79,7 +79,7 @@ TEST(SkiesIdentity, EachSkyIsTheSameInASceneAndOnTheCommandLine) {
   }
 }
 
-TEST(SkiesInvariant, EachParameterIsAKeyAndAFlagAndIsDescribed) {
+TEST(SkyRegistryInvariant, EachParameterIsAKeyAndAFlagAndIsDescribed) {
   const std::string help = malusIn(".", "sky --help").out,
                     list = malusIn(".", "sky --list").out;
   const json& keys = sceneSchema()["properties"]["sky"]["properties"];
@@ -95,7 +95,7 @@ TEST(SkiesInvariant, EachParameterIsAKeyAndAFlagAndIsDescribed) {
   EXPECT_FALSE(keys.contains("wind_m_s"));  // control
 }
 
-TEST(SkiesIdentity, WhatIsWrongIsSaidAtItsPlace) {
+TEST(SkyRegistryIdentity, WhatIsWrongIsSaidAtItsPlace) {
   const auto complaint = [](const json& sky) {
     try {
       readSceneText(sceneUnder(sky).dump(), "s.json", ".");

@@ -129,7 +129,7 @@ double randomAverage(std::uint64_t key, std::uint32_t n) {
 
 // The first ten points of three dimensions as Joe and Kuo print them in the notes to their table
 // ("Notes on generating Sobol' sequences", 2008), there in Gray's order.
-TEST(LowDiscrepancyPublished, FirstPointsOfJoeAndKuo) {
+TEST(SobolPointsPublished, FirstPointsOfJoeAndKuo) {
   const double printed[10][3] = {{0, 0, 0},
                                  {0.5, 0.5, 0.5},
                                  {0.75, 0.25, 0.25},
@@ -147,11 +147,11 @@ TEST(LowDiscrepancyPublished, FirstPointsOfJoeAndKuo) {
       << "negative control: not in binary order";
 }
 
-TEST(LowDiscrepancyIdentity, SixIsThreeEighths) {
+TEST(SobolPointsIdentity, SixIsThreeEighths) {
   EXPECT_EQ(sobolWords(6)[0], std::uint32_t{3} << 29);
 }
 
-TEST(LowDiscrepancyIdentity, SobolPointsAreNets) {
+TEST(SobolPointsIdentity, SobolPointsAreNets) {
   for (unsigned m = 0; m <= 10; ++m) {
     EXPECT_TRUE(isNet(sobolNet(m), m, 0, 2)) << m;
     EXPECT_TRUE(isNet(sobolNet(m), m, 3, 4)) << m;
@@ -161,7 +161,7 @@ TEST(LowDiscrepancyIdentity, SobolPointsAreNets) {
       << "negative control: a block that is not aligned";
 }
 
-TEST(LowDiscrepancyInvariant, ScrambledPointsAreNets) {
+TEST(SobolPointsInvariant, ScrambledPointsAreNets) {
   for (std::uint64_t key = 0; key < 20; ++key) {
     const SobolPoints points(key, 1, 2, 3, 4);
     for (const unsigned m : {1u, 4u, 7u, 10u}) {
@@ -176,7 +176,7 @@ TEST(LowDiscrepancyInvariant, ScrambledPointsAreNets) {
   }
 }
 
-TEST(LowDiscrepancyInvariant, ScramblingIsOneToOneAtEveryScale) {
+TEST(SobolPointsInvariant, ScramblingIsOneToOneAtEveryScale) {
   for (const std::uint32_t spacing : {1u, 1u << 10, 1u << 20}) {
     std::set<std::uint32_t> seen;
     for (std::uint32_t i = 0; i < 4096; ++i)
@@ -186,14 +186,14 @@ TEST(LowDiscrepancyInvariant, ScramblingIsOneToOneAtEveryScale) {
 }
 
 // Beyond 65536 points, where the shuffling of the index changes its key.
-TEST(LowDiscrepancyInvariant, NoPointComesTwice) {
+TEST(SobolPointsInvariant, NoPointComesTwice) {
   const SobolPoints points(5);
   std::set<double> seen;
   for (std::uint32_t i = 0; i < 1u << 18; ++i) seen.insert(points(i)[0]);
   EXPECT_EQ(seen.size(), std::size_t{1} << 18);
 }
 
-TEST(LowDiscrepancyInvariant, EveryPointIsUniform) {
+TEST(SobolPointsInvariant, EveryPointIsUniform) {
   constexpr std::size_t cells = 64, draws = 20000;
   for (const std::uint32_t index : {0u, 1u, 17u, 90u, 70000u})
     for (std::size_t d = 0; d < 4; ++d) {
@@ -209,7 +209,7 @@ TEST(LowDiscrepancyInvariant, EveryPointIsUniform) {
     }
 }
 
-TEST(LowDiscrepancyInvariant, CoinsAreIndependent) {
+TEST(SobolPointsInvariant, CoinsAreIndependent) {
   for (const auto& [prefix, depth] : {std::pair{0u, 0u}, {1u << 31, 1u}, {0xa5a50000u, 12u}}) {
     EXPECT_GT(threeCoins(owenScrambled, prefix, depth), false_alarm) << depth;
   }
@@ -217,7 +217,7 @@ TEST(LowDiscrepancyInvariant, CoinsAreIndependent) {
       << "negative control: the coins of Laine's and Karras's permutation depend on each other";
 }
 
-TEST(LowDiscrepancyInvariant, BouncesAreIndependent) {
+TEST(SobolPointsInvariant, BouncesAreIndependent) {
   constexpr std::size_t side = 8, draws = 400, points = 64;
   std::vector<std::size_t> counts(side * side, 0), diagonal(side * side, 0);
   for (std::uint64_t key = 0; key < draws; ++key) {
@@ -239,7 +239,7 @@ TEST(LowDiscrepancyInvariant, BouncesAreIndependent) {
 // (first bounce, second bounce) must not keep to a diagonal. With the shuffling the number of
 // occupied cells of a 16 x 16 square is that of 256 random throws, 256 (1 - 1/e) = 162 with a
 // standard deviation of 6; without it the 256 pairs meet in 16 cells.
-TEST(LowDiscrepancyInvariant, OrderIsShuffledBetweenBounces) {
+TEST(SobolPointsInvariant, OrderIsShuffledBetweenBounces) {
   std::size_t occupied = 0;
   constexpr std::uint64_t sets = 50;
   for (std::uint64_t key = 0; key < sets; ++key) {
@@ -254,7 +254,7 @@ TEST(LowDiscrepancyInvariant, OrderIsShuffledBetweenBounces) {
   EXPECT_LT(mean, 200);
 }
 
-TEST(LowDiscrepancyInvariant, KeysAloneDecide) {
+TEST(SobolPointsInvariant, KeysAloneDecide) {
   EXPECT_EQ(SobolPoints(1, 2, 3, 4, 5)(6), SobolPoints(1, 2, 3, 4, 5)(6));
   const auto point = SobolPoints(1, 2, 3, 4, 5)(6);
   for (const SobolPoints& other :
@@ -266,7 +266,7 @@ TEST(LowDiscrepancyInvariant, KeysAloneDecide) {
 // The slopes of log error over log n from 16 to 1024 points. Scrambled nets: -1.5 for smooth
 // integrands, up to the logarithm; random numbers: -0.5. With 64 keys an error is known to a tenth,
 // so a slope to 0.15 / log(64) = 0.04.
-TEST(LowDiscrepancyInvariant, ErrorFallsFasterThanThatOfRandomNumbers) {
+TEST(SobolPointsInvariant, ErrorFallsFasterThanThatOfRandomNumbers) {
   const auto slope = [](const auto& draw) {
     return std::log(errorOf(1024, draw) / errorOf(16, draw)) / std::log(64.0);
   };
@@ -275,7 +275,7 @@ TEST(LowDiscrepancyInvariant, ErrorFallsFasterThanThatOfRandomNumbers) {
 }
 
 // A block of points has the bits of so many single points, wherever it begins.
-TEST(LowDiscrepancyIdentity, ABlockOfPointsIsThePointsOneByOne) {
+TEST(SobolPointsIdentity, ABlockOfPointsIsThePointsOneByOne) {
   for (const std::uint32_t first : {0u, 16u, 1000u, 65530u, 4000000u}) {
     const SobolPoints points(3, 1, first);
     const SobolPoints::Block block = points.points(first);
@@ -288,7 +288,7 @@ TEST(LowDiscrepancyIdentity, ABlockOfPointsIsThePointsOneByOne) {
 }
 
 // A reader keeps a block, and must notice when another one is wanted: forth, back, and again.
-TEST(LowDiscrepancyIdentity, AReaderGivesThePointsInAnyOrder) {
+TEST(SobolPointsIdentity, AReaderGivesThePointsInAnyOrder) {
   const SobolPoints points(3, 1, 4);
   SobolReader all(points, 4), three(points, 3);
   for (const std::uint32_t index : {0u, 1u, 7u, 8u, 3u, 3u, 65535u, 65536u, 65543u, 1u}) {

@@ -10,7 +10,7 @@
 
 using namespace malus;
 
-TEST(OwnAerosolInvariant, EveryClaimHolds) {
+TEST(XAerosolInvariant, EveryClaimHolds) {
   const Item item = ran("X.aerosol", reproduceXAerosol);
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"arago", "babinet", "circular", "converged", "curves",
@@ -22,13 +22,13 @@ TEST(OwnAerosolInvariant, EveryClaimHolds) {
 }
 
 // A digit of the printed table that is wrong is seen, by the claim whose digit it is.
-TEST(OwnAerosolPublished, NegativeControlAChangedDigitOfTheSeriesIsSeen) {
+TEST(XAerosolPublished, NegativeControlAChangedDigitOfTheSeriesIsSeen) {
   const Corrupted table("evans1991-series.csv", "1.45529318", "1.45529328");
   EXPECT_EQ(named(ran("X.aerosol", reproduceXAerosol, table.data), Verdict::differs),
             std::set<std::string>{"lists"});
 }
 
-TEST(OwnAerosolPublished, NegativeControlAChangedSignOfVIsSeen) {
+TEST(XAerosolPublished, NegativeControlAChangedSignOfVIsSeen) {
   const Corrupted table("evans1991-light.csv", "0.611213e-4", "-0.611213e-4");
   EXPECT_EQ(named(ran("X.aerosol", reproduceXAerosol, table.data), Verdict::differs),
             std::set<std::string>{"reflected"});

@@ -12,7 +12,7 @@
 
 using namespace malus;
 
-TEST(OwnChooserInvariant, ThePromisesAreKeptAndTheTableIsWhole) {
+TEST(XChooserInvariant, ThePromisesAreKeptAndTheTableIsWhole) {
   const Item item = ran("X.chooser", reproduceXChooser);
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"polarised", "diffuse", "reciprocal", "energy"}));

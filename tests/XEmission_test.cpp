@@ -10,7 +10,7 @@
 
 using namespace malus;
 
-TEST(OwnEmissionInvariant, EveryClaimHolds) {
+TEST(XEmissionInvariant, EveryClaimHolds) {
   const Item item = ran("X.emission", reproduceXEmission);
   const std::set<std::string> all{
       "parallel",         "waves", "metal.60deg", "metal.hemisphere", "water.hemisphere",

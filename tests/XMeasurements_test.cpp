@@ -17,14 +17,14 @@ const Item& measured() {
 }
 }  // namespace
 
-TEST(OwnMeasurementsInvariant, BothClaimsHoldAndBothPicturesAreDrawn) {
+TEST(XMeasurementsInvariant, BothClaimsHoldAndBothPicturesAreDrawn) {
   const std::map<std::string, Verdict> expected{{"table", Verdict::reproduced},
                                                 {"sum", Verdict::reproduced}};
   EXPECT_EQ(verdictsOf(measured()), expected);
   EXPECT_EQ(measured().pictures().size(), 2u);
 }
 
-TEST(OwnMeasurementsRegression, ValuesThatTheProseRestsOn) {
+TEST(XMeasurementsRegression, ValuesThatTheProseRestsOn) {
   auto values = valuesOf(measured());
   EXPECT_EQ(values["diffuse40"], "0.0085");
   EXPECT_EQ(values["diffuse30"], "0.0044");

@@ -18,7 +18,7 @@ const std::map<std::string, ItemFunction> items{
     {"X.vegetation", reproduceXVegetation}, {"X.sandford", reproduceXSandford}};
 }  // namespace
 
-TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
+TEST(XModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
   for (const auto& [id, function] : items) {
     const Item item = ran(id, function);
     EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{}) << id;
@@ -33,7 +33,7 @@ TEST(OwnModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
 }
 
 // The claims about tables hold, and their numbers are of a size that could have failed them.
-TEST(OwnModelsInvariant, TablesComeNearerWithTheSquareOfTheStep) {
+TEST(XModelsInvariant, TablesComeNearerWithTheSquareOfTheStep) {
   const Item item = ran("X.measured", reproduceXMeasured);
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"order", "narrow", "wide"}));

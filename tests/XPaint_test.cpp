@@ -31,7 +31,7 @@ Table tableOf(const std::string& name) {
 double valueOf(const std::string& name) { return std::stod(valuesOf(paint()).at(name)); }
 }  // namespace
 
-TEST(OwnPaintInvariant, EveryClaimHolds) {
+TEST(XPaintInvariant, EveryClaimHolds) {
   const Item& item = paint();
   EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{});
   for (const char* claim :
@@ -101,7 +101,7 @@ void checkCoats() {
 }
 
 // One test, because each test is a process that runs the item.
-TEST(OwnPaintPublished, PicturesOfTheParts) {
+TEST(XPaintPublished, PicturesOfTheParts) {
   checkFilms();
   checkFace();
   checkGrains();

@@ -20,7 +20,7 @@ const Item& measured() {
 }
 }  // namespace
 
-TEST(OwnPolarimeterInvariant, AllClaimsHoldAndThePictureIsDrawn) {
+TEST(XPolarimeterInvariant, AllClaimsHoldAndThePictureIsDrawn) {
   const std::map<std::string, Verdict> expected{{"recovered", Verdict::reproduced},
                                                 {"noise", Verdict::reproduced},
                                                 {"edges", Verdict::reproduced}};
@@ -29,13 +29,13 @@ TEST(OwnPolarimeterInvariant, AllClaimsHoldAndThePictureIsDrawn) {
 }
 
 // sqrt(3) where all readings are equal; here they differ by a tenth or so, and 16384 pixels leave one per cent.
-TEST(OwnPolarimeterIdentity, TheNoiseOfS2IsAboutRootThreeTimesThatOfS1) {
+TEST(XPolarimeterIdentity, TheNoiseOfS2IsAboutRootThreeTimesThatOfS1) {
   auto values = valuesOf(measured());
   EXPECT_NEAR(std::stod(values["noisier"]), std::sqrt(3.0), 0.1);
   EXPECT_GT(std::stod(values["outer"]), std::stod(values["inner"]));
 }
 
-TEST(OwnPolarimeterIdentity, NegativeControlAFilterThatIsTurnedIsSeen) {
+TEST(XPolarimeterIdentity, NegativeControlAFilterThatIsTurnedIsSeen) {
   const double degree = std::numbers::pi / 180;
   const auto cameras = [&](double second_deg) {
     return Polarimeter(camerasBehind({linearPolarizer(0), linearPolarizer(second_deg * degree),

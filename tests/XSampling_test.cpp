@@ -18,7 +18,7 @@ const Item& measured() {
 }
 }  // namespace
 
-TEST(OwnSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
+TEST(XSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
   const std::map<std::string, Verdict> expected{{"random", Verdict::reproduced},
                                                 {"sobol", Verdict::reproduced},
                                                 {"rotated", Verdict::reproduced},
@@ -28,7 +28,7 @@ TEST(OwnSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
 }
 
 // The order of the samplings at 64 rays, in every component, is what the chapter's prose rests on.
-TEST(OwnSamplingRegression, OrderOfTheSamplings) {
+TEST(XSamplingRegression, OrderOfTheSamplings) {
   auto values = valuesOf(measured());
   for (const std::string s : {"S0", "S1", "S2", "S3"}) {
     const auto error = [&](const std::string& sampler) {
@@ -42,7 +42,7 @@ TEST(OwnSamplingRegression, OrderOfTheSamplings) {
 }
 
 // The same seed makes the same picture, so errors are equal to the last bit; time is not asked.
-TEST(OwnSamplingInvariant, MeasurementIsRepeatable) {
+TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
   const auto again =
       measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32, .only = "sobol"});
@@ -54,7 +54,7 @@ TEST(OwnSamplingInvariant, MeasurementIsRepeatable) {
   EXPECT_NE(once[0].errors, again[0].errors) << "negative control: random directions";
 }
 
-TEST(OwnSamplingInvariant, AHundredBandsHaveTheSameFirstOne) {
+TEST(XSamplingInvariant, AHundredBandsHaveTheSameFirstOne) {
   const SamplingTask one{.side = 8, .rays = {16}, .reference_rays = 16, .only = "sobol"};
   SamplingTask hundred = one;
   hundred.bands = 100;

@@ -17,7 +17,7 @@ const Item& measured() {
 }
 }  // namespace
 
-TEST(OwnSpectraInvariant, AllClaimsHoldAndAllPicturesAreDrawn) {
+TEST(XSpectraInvariant, AllClaimsHoldAndAllPicturesAreDrawn) {
   const std::map<std::string, Verdict> expected{{"integral", Verdict::reproduced},
                                                 {"peaks", Verdict::reproduced},
                                                 {"bands", Verdict::reproduced},
@@ -26,7 +26,7 @@ TEST(OwnSpectraInvariant, AllClaimsHoldAndAllPicturesAreDrawn) {
   EXPECT_EQ(measured().pictures().size(), 3u);
 }
 
-TEST(OwnSpectraRegression, ValuesThatTheProseRestsOn) {
+TEST(XSpectraRegression, ValuesThatTheProseRestsOn) {
   auto values = valuesOf(measured());
   EXPECT_EQ(values["narrow"], "1.0000");
   EXPECT_EQ(values["rectangular"], "0.9500");

@@ -8,7 +8,7 @@
 using namespace malus;
 
 // What is counted and drawn must hold; what is timed must have been timed, and is judged by nobody here.
-TEST(OwnSpeedInvariant, TheSameWorkAndTheSamePicture) {
+TEST(XSpeedInvariant, TheSameWorkAndTheSamePicture) {
   const Item item = ran("C5", reproduceC5);
   auto verdicts = verdictsOf(item);
   EXPECT_EQ(verdicts.size(), 3u);

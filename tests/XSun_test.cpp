@@ -11,7 +11,7 @@
 using namespace malus;
 
 // The criteria stand in validation/claims.csv.
-TEST(OwnSunInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
+TEST(XSunInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
   const Item item = ran("X.sun", reproduceXSun);
   const std::map<std::string, Verdict> expected{{"edge", Verdict::reproduced},
                                                 {"glint", Verdict::reproduced},

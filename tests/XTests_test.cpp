@@ -27,7 +27,7 @@ struct FaultReport : Scratch {
 };
 }  // namespace
 
-TEST(TestsInvariant, TheShareIsThatOfTheCountedFaults) {
+TEST(XTestsInvariant, TheShareIsThatOfTheCountedFaults) {
   const FaultReport report(380, 20);
   const Item item = ran("X.tests", reproduceXTests, report.path);
   auto verdicts = verdictsOf(item);
@@ -46,14 +46,14 @@ TEST(TestsInvariant, TheShareIsThatOfTheCountedFaults) {
             0u);
 }
 
-TEST(TestsInvariant, OneFaultLessDiffers) {  // negative control
+TEST(XTestsInvariant, OneFaultLessDiffers) {  // negative control
   const FaultReport few(379, 20), unseen(379, 21);
   EXPECT_EQ(verdictsOf(ran("X.tests", reproduceXTests, few.path))["enough"], Verdict::differs);
   EXPECT_EQ(verdictsOf(ran("X.tests", reproduceXTests, unseen.path))["noticed"],
             Verdict::differs);
 }
 
-TEST(TestsInvariant, ADamagedReportIsRefused) {
+TEST(XTestsInvariant, ADamagedReportIsRefused) {
   const FaultReport damaged(1, 1, "base/CDVector,x:1,a,b,noticed,perhaps\n");
   EXPECT_THROW(ran("X.tests", reproduceXTests, damaged.path), InputError);
 }
