@@ -11,10 +11,11 @@ GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 # The scripts name /usr/bin/python3, for which Debian's modules are installed: another Python may come first in PATH.
 PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
-           libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev
+           libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev \
+           python3-dev pybind11-dev python3-numpy python3-xarray python3-matplotlib
 BOOK    := latexml universal-ctags python3-lxml python3-pybtex fonts-texgyre fonts-texgyre-math
 # other people's readers of our cubes, and a judge of HTML, for the tests alone
-TEST    := python3-gdal python3-spectral tidy
+TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 tidy
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
 
@@ -66,7 +67,7 @@ format: ## let clang-format format the chapters' code and the tests
 PREFIX  ?= /usr/local
 BASELINE ?= x86-64-v2
 install: need-program $(BUILD)/CMakeCache.txt ## install programs, libraries, headers and data (PREFIX=/usr/local, DESTDIR=)
-	@cmake --build $(BUILD) -j $(JOBS) --target malus mathtester
+	@cmake --build $(BUILD) -j $(JOBS) --target programs
 	@cmake/install.sh $(BUILD) "$(PREFIX)" "$(DESTDIR)" "$(BASELINE)" $(JOBS) $(GENERATOR)
 
 ladder: need-program $(BUILD)/CMakeCache.txt ## link each floor with those below it and no others
@@ -78,8 +79,8 @@ format-check: ## whether the chapters' code and the tests are formatted so
 	@doc/weaver/format.py --check $(shell git ls-files '*.nw')
 	@clang-format --dry-run -Werror $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
 
-lint: ## check types, names and style of the Python (weaver, tests, scenes)
-	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex
+lint: ## check types, names and style of the Python (module, weaver, tests, scenes)
+	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex python3-numpy python3-xarray python3-matplotlib python3-pytest
 	@mypy --config-file doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pycodestyle --config doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pylint --rcfile=doc/weaver/setup.cfg --score=no $(shell git ls-files '*.py')

@@ -11,7 +11,7 @@ cmake --install "$build" --prefix "$prefix" >/dev/null
 if [ -n "$baseline" ] && [ "$baseline" != "$isa" ] && [ "$(uname -m)" = x86_64 ]; then
   cmake --install "$build" --prefix "$prefix" --component faster >/dev/null
   cmake -S . -B "$build-$baseline" "$@" -DCMAKE_BUILD_TYPE=Release -DMALUS_ISA="$baseline" -DMALUS_BUILD_TESTS=OFF >/dev/null
-  cmake --build "$build-$baseline" -j "$jobs" --target malus mathtester
+  cmake --build "$build-$baseline" -j "$jobs" --target programs
   cmake --install "$build-$baseline" --prefix "$prefix" >/dev/null
 fi
 echo "malus is in $destdir$prefix"

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <bit>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <complex>
@@ -196,6 +197,32 @@ TEST(MicrofacetsIdentity, NearlyGrazingTiltKeepsItsDigits) {
   // back.
   const auto g = BRDFGeometry{4e-7, 1 - 8e-14, 1e-7, 1 - 5e-15, -1, 0};
   EXPECT_NEAR(facetGeometry(g).tan2_alpha / std::pow(1.5e-7, 2), 1, 3e-3);
+}
+
+// The rest after whole quarter turns is that of std::remquo to the last bit, ties, signs of zero and huge angles included.
+TEST(MicrofacetsIdentity, DegreesAreReducedAsTheLibraryDoes) {
+  const auto expected = [](double deg) {
+    int quarters = 0;
+    const double rest = std::remquo(deg, 90, &quarters) * (std::numbers::pi / 180);
+    const double c = std::cos(rest), s = std::sin(rest);
+    const std::array<std::array<double, 2>, 4> turned{{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
+    return turned[quarters & 3];
+  };
+  const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
+  std::mt19937_64 random(90);
+  std::vector<double> angles{0.0, -0.0, 45, -45, 135, -135, 180, -180, 1e9, 1e300, 5e-324};
+  for (int i = -1000; i <= 1000; ++i)
+    for (const double near :
+         {i * 45.0, std::nextafter(i * 45.0, 1e9), std::nextafter(i * 45.0, -1e9)})
+      angles.push_back(near);
+  for (int i = 0; i < 100000; ++i)
+    angles.push_back(std::uniform_real_distribution(-1e4, 1e4)(random));
+  for (const double deg : angles) {
+    const auto g = BRDFGeometry::fromDegrees(0, 0, deg);
+    ASSERT_EQ(bits(g.cos_phi), bits(expected(deg)[0])) << deg;
+    ASSERT_EQ(bits(g.sin_phi), bits(expected(deg)[1])) << deg;
+  }
+  EXPECT_NE(bits(BRDFGeometry::fromDegrees(0, 0, -180).sin_phi), bits(expected(180)[1]));
 }
 
 TEST(MicrofacetsIdentity, DegreesAreExactAtQuarterTurns) {
