@@ -1,11 +1,14 @@
-"""The sun."""
+"""The sun and the sky."""
+import math
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from . import _malus
+from .surface import parameters_of
 
 
 class SunPosition(NamedTuple):
@@ -53,3 +56,115 @@ def sun(latitude_deg: npt.ArrayLike, longitude_deg: npt.ArrayLike, time: Any) ->
     for index in np.ndindex(times.shape):
         days[index] = _julian_day(times[index])
     return SunPosition(*_malus.sun(latitude_deg, longitude_deg, days))
+
+
+def skies() -> dict[str, dict[str, Any]]:
+    """All skies, by name: summary, example and parameters with units and intervals.
+
+    Returns
+    -------
+    dict of str to dict
+        ``skies()["rayleigh"]["parameters"]["albedo"]`` is a `Parameter`.
+    """
+    return {name: {**one, "parameters": parameters_of(one["parameters"])} for name, one in _malus.skies().items()}
+
+
+def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, sun_zenith_deg: float | None = None,
+        mu0: float | None = None, zenith_deg: npt.ArrayLike | None = None, mu: npt.ArrayLike | None = None,
+        phi_deg: npt.ArrayLike | None = None, dome_step_deg: float = 5.0, direction: str = "down", tau_obs: float | None = None,
+        irradiance: str | float = "pi", convention: str = "malus", **parameters: Any) -> xr.Dataset:
+    """Polarised light of the sky, or what the air sends up to space.
+
+    Every combination of wavelengths, zenith angles and azimuths is computed. The keywords are the flags of ``malus sky``.
+
+    Parameters
+    ----------
+    model : str
+        A name of ``malus.skies()``.
+    wavelength_nm : float or 1-D array, optional
+        [nm]; it may be left out where the optical depth ``tau`` is given instead.
+    sun_zenith_deg, mu0 : float
+        Where the sun stands: its zenith angle [deg] or the cosine of it.
+    zenith_deg, mu : 1-D array, optional
+        Zenith angles of the lines of sight [deg], or their cosines. If neither is given: from 0 to 90 in steps of ``dome_step_deg``.
+    phi_deg : 1-D array, optional
+        Azimuths from the sun, clockwise from above [deg]; if not given, all around in the same steps.
+    dome_step_deg : float
+        Divides 90 [deg].
+    direction : {"down", "up"}
+        Which way the light travels.
+    tau_obs : float, optional
+        Optical depth over the observer.
+    irradiance : {"pi", "astm-e490"} or float
+        Of the sun above the air. With "astm-e490" the radiance is in W m^-2 sr^-1 nm^-1, else in units of the irradiance per steradian.
+    convention : {"malus", "natraj", "iprt"}
+        Signs of Q and U.
+    **parameters
+        Of the sky: ``tau``, ``albedo``, ``aerosol`` and others; ``malus.skies()`` describes them.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radiance`` (wavelength_nm, zenith_deg, phi_deg, stokes), float64.
+
+    Examples
+    --------
+    >>> dome = malus.sky(wavelength_nm=450, sun_zenith_deg=60, albedo=0.1)
+    >>> float(malus.dolp(dome.radiance).max().round(2))
+    0.74
+    """
+    if "depolarisation" in parameters:
+        parameters["depolarization"] = parameters.pop("depolarisation")
+    if sun_zenith_deg is not None:
+        if mu0 is not None:
+            raise ValueError("malus.sky: sun_zenith_deg: stands beside mu0; give one of them")
+        mu0 = _cosine(float(sun_zenith_deg), "sun_zenith_deg")
+    if zenith_deg is not None and mu is not None:
+        raise ValueError("malus.sky: zenith_deg: stands beside mu; give one of them")
+    if direction not in ("down", "up"):
+        raise ValueError(f"malus.sky: direction = {direction}: is none of the words allowed here; known are: down, up")
+    steps = round(90 / dome_step_deg) if dome_step_deg > 0 else 0
+    if abs(steps * dome_step_deg - 90) > 1e-9:
+        raise ValueError(f"malus.sky: dome_step_deg = {dome_step_deg:g}: does not divide 90; give e.g. 5")
+    if mu is not None:
+        cosines = _axis(mu, "mu")
+        for one in cosines:
+            if not 1e-9 <= one <= 1:
+                raise ValueError(f"malus.sky: mu = {one:g}: must be 1e-09 to 1; give cosine of the zenith angle of the line of sight")
+        zenith = np.degrees(np.arccos(cosines))
+    else:
+        zenith = np.append(np.arange(steps) * dome_step_deg, 90.0) if zenith_deg is None else _axis(zenith_deg, "zenith_deg")
+        cosines = np.array([_cosine(one, "zenith_deg") for one in zenith])
+    phi = np.arange(4 * steps) * dome_step_deg if phi_deg is None else _axis(phi_deg, "phi_deg")
+    nm = _axis(wavelength_nm, "wavelength_nm") if wavelength_nm is not None else np.empty(0)
+    words = irradiance if isinstance(irradiance, str) else repr(float(irradiance))
+    light = _malus.sky(model, nm.tolist(), mu0, cosines.tolist(), phi.tolist(), direction == "up", tau_obs, words, convention, parameters)
+    first = "Q = ll - rr" if convention == "iprt" else "Q = rr - ll"
+    frame = (f"{first}, l in the meridian plane, r horizontal; U = 2 Re lr*; V > 0: the field turns counter-clockwise for who looks at the "
+             "source; azimuths clockwise from above")
+    unit = "W m^-2 sr^-1 nm^-1" if irradiance == "astm-e490" else "sr^-1"
+    coordinates = {
+        "wavelength_nm": ("wavelength_nm", nm if nm.size else [np.nan], {"units": "nm"}),
+        "zenith_deg": ("zenith_deg", zenith, {"units": "degree", "long_name": "zenith angle of the line of sight"}),
+        "phi_deg": ("phi_deg", phi, {"units": "degree", "long_name": "azimuth from the sun, clockwise from above"}),
+        "stokes": ("stokes", ["S0", "S1", "S2", "S3"] if convention == "malus" else ["I", "Q", "U", "V"], {"description": frame}),
+    }
+    given = {name: value for name, value in {**parameters, "mu0": mu0, "tau_obs": tau_obs}.items() if value is not None}
+    attributes = {"title": f"Light of the sky, model {model}", "model": model, "direction": direction, "irradiance": irradiance,
+                  "convention": convention, "program": f"malus {_malus.__version__}",
+                  **{name: value if isinstance(value, int | float | str) else str(value) for name, value in given.items()}}
+    meaning = {"units": unit, "long_name": f"Stokes radiance for the irradiance {irradiance}", "description": frame}
+    return xr.Dataset({"radiance": (tuple(coordinates), light, meaning)}, coordinates, attributes)
+
+
+def _cosine(zenith_deg: float, name: str) -> float:
+    if not 0 <= zenith_deg <= 90:
+        raise ValueError(f"malus.sky: {name} = {zenith_deg:g} deg: must be 0 to 90; give the angle from the zenith, in degrees")
+    return 0.0 if zenith_deg == 90 else math.cos(zenith_deg * math.pi / 180)
+
+
+def _axis(given: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
+    axis = np.asarray(given, dtype=float)
+    if axis.ndim > 1:
+        raise ValueError(f"malus.sky: {name}: has the shape {axis.shape}; give a number or an array with one axis")
+    return axis.reshape(-1)

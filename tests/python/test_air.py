@@ -1,6 +1,7 @@
 """The sun and the air from Python against the program, to the last bit."""
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,3 +41,75 @@ def test_refusals_of_the_sun() -> None:
         assert str(refused.value).split("; ")[1] == expected.split("; ")[1]
     with pytest.raises(ValueError, match="has no time zone"):
         malus.sun(*ROCHESTER, datetime(2001, 6, 10))
+
+
+def test_a_dome_is_the_programs() -> None:
+    text = run_malus("sky", "--wavelength-nm", 450, "--mu0", 0.5, "--albedo", 0.2, "--dome-step-deg", 15, "--irradiance", "astm-e490")
+    dome = malus.sky(wavelength_nm=450, mu0=0.5, albedo=0.2, dome_step_deg=15, irradiance="astm-e490")
+    assert dome.radiance.dims == ("wavelength_nm", "zenith_deg", "phi_deg", "stokes")
+    assert np.array_equal(dome.radiance.values.reshape(-1, 4), numbers(text, "S0", "S1", "S2", "S3"))
+    assert np.array_equal(np.repeat(dome.zenith_deg, dome.phi_deg.size), numbers(text, "zenith_deg")[:, 0])
+    darker = malus.sky(wavelength_nm=450, mu0=0.5, albedo=0.2 - 1e-9, dome_step_deg=15, irradiance="astm-e490")
+    assert not np.array_equal(dome.radiance, darker.radiance)  # the negative control
+
+
+def test_a_hazy_dome_is_the_programs() -> None:
+    haze = "scenes/data/aerosol-spheroids.csv"
+    text = run_malus("sky", "--wavelength-nm", 700, "--mu0", 0.5, "--aerosol", haze, "--aerosol-tau", 0.1, "--dome-step-deg", 30)
+    dome = malus.sky(wavelength_nm=700, mu0=0.5, aerosol=Path(haze), aerosol_tau=0.1, dome_step_deg=30)
+    assert np.array_equal(dome.radiance.values.reshape(-1, 4), numbers(text, "S0", "S1", "S2", "S3"))
+
+
+@pytest.mark.parametrize("direction, convention", [("down", "iprt"), ("up", "natraj")])
+def test_directions_are_the_programs(direction: str, convention: str, tmp_path: Path) -> None:
+    mu, phi = [0.2, 0.7, 1.0], [0.0, 33.3, 180.0]
+    rows = [f"{m!r},{p!r}" for m in mu for p in phi]
+    (tmp_path / "q.csv").write_text("\n".join(["mu,phi_deg", *rows]) + "\n", encoding="utf-8")
+    text = run_malus("sky", "--tau", 0.5, "--albedo", 0.25, "--mu0", 0.6, "--tau-obs", 0.3, "--direction", direction,
+                     "--convention", convention, "--input", tmp_path / "q.csv")
+    light = malus.sky(tau=0.5, albedo=0.25, mu0=0.6, tau_obs=0.3, direction=direction, convention=convention, mu=mu, phi_deg=phi)
+    assert np.array_equal(light.radiance.values.reshape(-1, 4), numbers(text, "I", "Q", "U", "V"))
+    assert light.stokes.values.tolist() == ["I", "Q", "U", "V"]
+
+
+def test_a_sky_that_is_not_air_is_the_programs() -> None:
+    text = run_malus("sky", "--model", "uniform", "--temperature-K", 230, "--wavelength-nm", 10000, "--mu", 0.5)
+    light = malus.sky("uniform", temperature_K=230, wavelength_nm=10000, mu=0.5, phi_deg=0)
+    assert np.array_equal(light.radiance.values.reshape(-1, 4), numbers(text, "I", "Q", "U", "V"))
+    assert set(malus.skies()) == {line.split()[0] for line in run_malus("sky", "--list").splitlines()}
+    assert malus.skies()["rayleigh"]["parameters"]["albedo"].high == 1
+
+
+def test_wavelengths_are_skies_beside_each_other() -> None:
+    both = malus.sky(wavelength_nm=[450, 650], sun_zenith_deg=60, dome_step_deg=30)
+    assert np.array_equal(both.radiance[1], malus.sky(wavelength_nm=650, sun_zenith_deg=60, dome_step_deg=30).radiance[0])
+    assert not np.array_equal(both.radiance[0], both.radiance[1])
+
+
+@pytest.mark.parametrize("words, flags", [
+    ({"wavelength_nm": 450, "mu0": 0.5, "albdo": 0.1, "mu": 1}, None),
+    ({"wavelength_nm": 450, "mu0": 0.5, "albedo": 2, "mu": 1}, ("--wavelength-nm", 450, "--mu0", 0.5, "--albedo", 2, "--mu", 1)),
+    ({"model": "raleigh", "mu0": 0.5, "mu": 1}, ("--model", "raleigh", "--mu0", 0.5, "--mu", 1)),
+    ({"tau": 0.5, "mu0": 0.5, "tau_obs": 1, "mu": 1}, ("--tau", 0.5, "--mu0", 0.5, "--tau-obs", 1, "--mu", 1)),
+])
+def test_refusals_of_the_sky(words: dict[str, Any], flags: tuple[Any, ...] | None) -> None:
+    with pytest.raises(ValueError) as refused:
+        malus.sky(**words)
+    assert "\n" not in str(refused.value)
+    if flags is None:
+        assert "did you mean albedo?" in str(refused.value)
+    else:
+        assert str(refused.value).split(": ", 2)[2] == complaint("sky", *flags).split(": ", 2)[2]
+
+
+@pytest.mark.parametrize("words, message", [
+    ({"sun_zenith_deg": 95}, "malus.sky: sun_zenith_deg = 95 deg: must be 0 to 90; give the angle from the zenith, in degrees"),
+    ({"sun_zenith_deg": 5, "mu0": 1}, "malus.sky: sun_zenith_deg: stands beside mu0; give one of them"),
+    ({"sun_zenith_deg": 5, "dome_step_deg": 7}, "malus.sky: dome_step_deg = 7: does not divide 90; give e.g. 5"),
+    ({"sun_zenith_deg": 5, "mu": np.ones((2, 2))}, "malus.sky: mu: has the shape (2, 2); give a number or an array with one axis"),
+    ({}, "malus.sky: sun_zenith_deg: is missing; give sun_zenith_deg, or mu0, the cosine of the sun's zenith angle"),
+])
+def test_refusals_of_the_skys_arrays(words: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError) as refused:
+        malus.sky(wavelength_nm=450, **words)
+    assert str(refused.value) == message

@@ -1,0 +1,174 @@
+"""Pictures: rendered, or read from cubes."""
+import json
+import os
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from . import _malus
+
+Watcher = Callable[[float, str], object]
+PIXEL = {"x": {"long_name": "pixel in its row, from the left", "units": "1"},
+         "y": {"long_name": "row, from the top", "units": "1"}}
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know of NumPy and of paths."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return os.fspath(value)
+
+
+class _Bar:
+    """tqdm over a fraction that grows."""
+
+    def __init__(self) -> None:
+        try:
+            from tqdm.auto import tqdm  # pylint: disable=import-outside-toplevel
+        except ImportError:
+            self.bar = None
+        else:
+            self.bar = tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
+
+    def __call__(self, fraction: float, text: str) -> None:
+        if self.bar is not None:
+            self.bar.set_postfix_str(text, refresh=False)
+            self.bar.update(round(100 * fraction, 1) - self.bar.n)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+
+def _dataset(found: dict[str, Any]) -> xr.Dataset:
+    pixels = ("frame", "y", "x")
+    variables = {
+        "radiance": ((*pixels, "band", "stokes"), found["radiance"],
+                     {"units": found["unit"], "long_name": "Stokes radiance", "description": found["description"]}),
+        "range_m": (pixels, found["range_m"], {"units": "m", "long_name": "way to what the first ray of a pixel meets; NaN: the sky"}),
+        "facet": (pixels, found["facet"], {"long_name": "number in the attribute facets; -1: the sky"}),
+        "material": (pixels, found["material"], {"long_name": "number in the attribute materials; -1: the sky"}),
+        "sun_hidden": (pixels, found["sun_hidden"], {"long_name": "whether the sun's ray does not reach what is met"}),
+        "rays": (pixels, found["rays"], {"units": "1", "long_name": "rays that were followed"}),
+    }
+    height, width = found["rays"].shape[1:]
+    coordinates = {
+        "frame": ("frame", np.array(found["frames"], dtype=np.int64), {"long_name": "number of the frame, from 0"}),
+        "time_s": ("frame", np.array(found["time_s"], dtype=np.float64), {"units": "s", "long_name": "time after that of frame 0"}),
+        "y": ("y", found["y0"] + np.arange(height), PIXEL["y"]),
+        "x": ("x", found["x0"] + np.arange(width), PIXEL["x"]),
+        "band": ("band", found["bands"], {"long_name": "name of the band, or its wavelength in nm"}),
+        "wavelength_nm": ("band", np.array(found["wavelength_nm"]), {"units": "nm"}),
+        "fwhm_nm": ("band", np.array(found["fwhm_nm"]), {"units": "nm", "long_name": "full width at half maximum"}),
+        "stokes": ("stokes", ["S0", "S1", "S2", "S3"], {"long_name": "component", "description": found["description"]}),
+    }
+    attributes = {"title": found["title"], "scene": found["scene"], "seed": found["seed"], "program": f"malus {_malus.__version__}",
+                  "facets": found["facets"], "materials": found["materials"]}
+    if found["begins"]:
+        attributes["begins"] = found["begins"]
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iterable[int] | None = None,
+           tile: Sequence[int] | None = None, seed: int | None = None, threads: int = 0,
+           base: str | os.PathLike[str] | None = None, progress: bool | Watcher = False) -> xr.Dataset:
+    """Polarimetric pictures of a scene, in memory.
+
+    Parameters
+    ----------
+    scene : path or dict
+        A scene file, or its content with the same keys (``malus schema`` lists them).
+    frames : int or iterable of int, optional
+        Frames from 0; all if not given.
+    tile : (x0, y0, x1, y1), optional
+        Only this part of the picture; x1 and y1 are beyond its end.
+    seed : int, optional
+        Instead of the scene's.
+    threads : int
+        0 for all processors. The numbers do not depend on it.
+    base : path, optional
+        Where the files that a dict names are looked for; the current directory if not given.
+    progress : bool or callable
+        True: a bar, if tqdm is installed. A function is called with a fraction and a line of text, in this thread; what it raises
+        stops the render.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radiance`` (frame, y, x, band, stokes), float32 [W m^-2 sr^-1 nm^-1], with the numbers of ``malus render``'s cube, and the
+        truth of each pixel's first ray: ``range_m``, ``facet``, ``material``, ``sun_hidden``, ``rays``.
+
+    Raises
+    ------
+    ValueError
+        With the one line that ``malus render`` prints; a wrong key has its path.
+    KeyboardInterrupt
+        After Ctrl-C, when the tiles in work are finished.
+    """
+    bar = _Bar() if progress is True else None
+    watcher = bar if bar else progress if callable(progress) else None
+    wanted = [] if frames is None else [int(frames)] if isinstance(frames, int | np.integer) else [int(one) for one in frames]
+    if frames is not None and not wanted:
+        raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
+    path, text = (None, json.dumps(scene, default=_plain)) if isinstance(scene, dict) else (os.fspath(scene), "")
+    try:
+        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher))
+    finally:
+        if bar:
+            bar.close()
+
+
+def _numbers_in(description: str, pattern: str, otherwise: Sequence[int]) -> Sequence[int]:
+    found = re.search(pattern, description)
+    return [int(number) for number in found.groups()] if found else otherwise
+
+
+def _of_cube(found: dict[str, Any]) -> xr.Dataset:
+    """One frame from disk. What the header says in words, frame and first pixel, become coordinates."""
+    data = found["data"]
+    height, width = data.shape[:2]
+    frame, = _numbers_in(found["description"], r", frame (\d+)", [0])
+    x0, y0 = _numbers_in(found["description"], r", pixels from (\d+) (\d+)", [0, 0])
+    coordinates = {"frame": ("frame", [frame], {"long_name": "number of the frame, from 0"}),
+                   "y": ("y", y0 + np.arange(height), PIXEL["y"]), "x": ("x", x0 + np.arange(width), PIXEL["x"])}
+    attributes = {name: found[name] for name in ("description", "time", "map_info") if found[name]}
+    components = found["components"]
+    if components is None:
+        variables = {channel.replace(" ", "_"): (("frame", "y", "x"), data[None, :, :, i]) for i, channel in enumerate(found["channels"])}
+        return xr.Dataset(variables, coordinates, attributes)
+    each = len(components)
+    coordinates["band"] = ("band", [name.split(" ", 1)[-1] for name in found["channels"][::each]], {})
+    for name in ("wavelength_nm", "fwhm_nm"):
+        if found[name]:
+            coordinates[name] = ("band", np.array(found[name][::each]), {"units": "nm"})
+    coordinates["stokes"] = ("stokes", [f"S{i}" for i in components], {"long_name": "component"})
+    radiance = data.reshape(1, height, width, -1, each)
+    return xr.Dataset({"radiance": (("frame", "y", "x", "band", "stokes"), radiance,
+                                    {"units": found["unit"], "long_name": "Stokes radiance", "description": found["description"]})},
+                      coordinates, attributes)
+
+
+def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.Dataset:  # pylint: disable=redefined-builtin
+    """A cube of malus, or those of several frames, as a dataset.
+
+    Parameters
+    ----------
+    cube : path, or iterable of paths
+        ENVI cubes (``plate.img`` beside ``plate.img.hdr``) as ``malus render`` writes them. Paths in one call are frames of one picture.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of a Stokes cube ``radiance`` (frame, y, x, band, stokes), float32, as from `render`; of another cube a variable for each channel.
+
+    Raises
+    ------
+    ValueError
+        For a file that is no such cube, with its place.
+    """
+    paths = [cube] if isinstance(cube, str | os.PathLike) else list(cube)
+    frames = [_of_cube(_malus.read_cube(os.fspath(path))) for path in paths]
+    return frames[0] if len(frames) == 1 else xr.concat(frames, dim="frame", combine_attrs="drop_conflicts")
