@@ -1,5 +1,6 @@
-"""The sun and the sky."""
+"""The sun, the sky, and small spheres."""
 import math
+from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
@@ -168,3 +169,98 @@ def _axis(given: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
     if axis.ndim > 1:
         raise ValueError(f"malus.sky: {name}: has the shape {axis.shape}; give a number or an array with one axis")
     return axis.reshape(-1)
+
+
+@dataclass(frozen=True)
+class Spheres:
+    """What small spheres do to light; the answer of `mie`.
+
+    Attributes
+    ----------
+    x_eff : float
+        Effective size, 2 pi r / wavelength in the medium.
+    Q_ext, Q_sca, Q_abs, Q_back : float
+        Efficiencies: cross sections over the mean pi r^2. Q_back is that of radar.
+    albedo, asymmetry : float
+        Of single scattering; mean cosine of the scattering angle.
+    effective_radius_um, effective_variance, C_ext_um2, C_sca_um2 : float or None
+        Size and cross sections of a mean sphere; None if only the size ``x`` was given.
+    """
+
+    x_eff: float
+    Q_ext: float
+    Q_sca: float
+    Q_abs: float
+    Q_back: float
+    albedo: float
+    asymmetry: float
+    effective_radius_um: float | None
+    effective_variance: float | None
+    C_ext_um2: float | None
+    C_sca_um2: float | None
+    _answer: _malus.SpheresOfCall = field(repr=False, compare=False)
+
+    def matrix(self, angle_deg: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Scattering matrix by angle.
+
+        Parameters
+        ----------
+        angle_deg : array_like, shape (...)
+            Scattering angle, 0 straight on [deg].
+
+        Returns
+        -------
+        array, shape (..., 4, 4)
+            In axes perpendicular and parallel to the plane of scattering, S1 > 0 perpendicular; the mean of [0, 0] over all directions is 1.
+        """
+        return self._answer.matrix(angle_deg)
+
+    def greek(self) -> npt.NDArray[np.float64]:
+        """Greek constants in de Haan's convention.
+
+        Returns
+        -------
+        array, shape (terms, 6)
+            alpha1, alpha2, alpha3, alpha4, beta1, beta2 for l = 0, 1, ...
+        """
+        return self._answer.greek()
+
+
+def mie(n: float, k: float = 0.0, *, medium_n: float = 1.0, wavelength_nm: float | None = None, x: float | None = None,
+        radius_um: float | None = None, effective_radius_um: float | None = None, effective_variance: float | None = None,
+        median_radius_um: float | None = None, deviation: float | None = None, largest_radius_um: float | None = None) -> Spheres:
+    """Scattering of light by small spheres. Their size is said in one of four ways.
+
+    Parameters
+    ----------
+    n, k : float
+        Index of refraction n + ik of the spheres.
+    medium_n : float
+        Index of what is around them.
+    wavelength_nm : float
+        In vacuum [nm]; needed but with ``x``.
+    x : float
+        Size 2 pi r / wavelength in the medium, in place of lengths.
+    radius_um : float
+        Radius of spheres that are all alike [um].
+    effective_radius_um, effective_variance : float
+        Of a gamma law [um].
+    median_radius_um, deviation : float
+        Of a log-normal law by number [um], geometric standard deviation.
+    largest_radius_um : float, optional
+        No sphere of a law is larger [um].
+
+    Returns
+    -------
+    Spheres
+
+    Examples
+    --------
+    >>> round(malus.mie(1.55, x=5.2).Q_ext, 4)
+    3.1361
+    """
+    words = {"n": n, "k": k, "medium_n": medium_n, "wavelength_nm": wavelength_nm, "x": x, "radius_um": radius_um,
+             "effective_radius_um": effective_radius_um, "effective_variance": effective_variance,
+             "median_radius_um": median_radius_um, "deviation": deviation, "largest_radius_um": largest_radius_um}
+    answer = _malus.SpheresOfCall(words)
+    return Spheres(**answer.efficiencies(), _answer=answer)

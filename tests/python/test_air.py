@@ -113,3 +113,40 @@ def test_refusals_of_the_skys_arrays(words: dict[str, Any], message: str) -> Non
     with pytest.raises(ValueError) as refused:
         malus.sky(wavelength_nm=450, **words)
     assert str(refused.value) == message
+
+
+NAMES = ["x_eff", "Q_ext", "Q_sca", "Q_abs", "Q_back", "albedo", "asymmetry"]
+LENGTHS = ["effective_radius_um", "effective_variance", "C_ext_um2", "C_sca_um2"]
+
+
+@pytest.mark.parametrize("words", [
+    {"n": 1.55, "x": 5.2},
+    {"n": 1.33, "medium_n": 1.2, "wavelength_nm": 450, "radius_um": 0.3},
+    {"n": 1.44, "wavelength_nm": 550, "effective_radius_um": 0.2, "effective_variance": 0.07},
+    {"n": 1.5, "k": 0.01, "wavelength_nm": 550, "median_radius_um": 0.1, "deviation": 1.5, "largest_radius_um": 1},
+])
+def test_spheres_are_the_programs(words: dict[str, Any]) -> None:
+    flags = [word for name, value in words.items() for word in ("--" + name.replace("_", "-"), value)]
+    spheres = malus.mie(**words)
+    names = NAMES if "x" in words else NAMES + LENGTHS
+    assert np.array_equal([getattr(spheres, name) for name in names], numbers(run_malus("mie", *flags), *names)[0])
+    by_angle = numbers(run_malus("mie", *flags, "--matrix-step-deg", 30), "angle_deg", "F11", "-F12/F11", "F33/F11", "F34/F11")
+    f = spheres.matrix(by_angle[:, 0])
+    ours = [f[:, 0, 0], f[:, 0, 1] / f[:, 0, 0], f[:, 2, 2] / f[:, 0, 0], -f[:, 2, 3] / f[:, 0, 0]]
+    assert np.array_equal(np.stack(ours, axis=-1), by_angle[:, 1:])
+    columns = ["alpha1", "alpha2", "alpha3", "alpha4", "beta1", "beta2"]
+    assert np.array_equal(spheres.greek(), numbers(run_malus("mie", *flags, "--greek"), *columns))
+    assert malus.mie(**{**words, "n": words["n"] + 1e-9}).Q_ext != spheres.Q_ext  # the negative control
+
+
+@pytest.mark.parametrize("words, message", [
+    ({"n": 1.5}, "malus.mie: radius_um: is missing; give x, radius_um, effective_radius_um or median_radius_um"),
+    ({"n": 1.5, "x": 1, "radius_um": 1}, "malus.mie: radius_um = 1: stands beside x; say in one way how large they are"),
+    ({"n": 1.5, "radius_um": 1}, "malus.mie: wavelength_nm: is missing; give it beside radius_um"),
+    ({"n": 1.5, "x": 1, "deviation": 2}, "malus.mie: deviation = 2: has no meaning beside x; leave it out"),
+    ({"n": 1000, "x": 1}, "malus.mie: n = 1000: must be 0.01 to 100; correct it"),
+])
+def test_refusals_of_spheres(words: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError) as refused:
+        malus.mie(**words)
+    assert str(refused.value) == message

@@ -1,4 +1,5 @@
 """Pictures of datasets, and the examples."""
+import doctest
 import os
 import subprocess
 import sys
@@ -87,3 +88,8 @@ def test_the_readmes_lines_are_the_example() -> None:
     lines = Path("examples/polarized_sky.py").read_text(encoding="utf-8").split('"""')[2].strip().splitlines()
     readme = Path("README.md").read_text(encoding="utf-8")
     assert all(f"    {line}\n" in readme for line in lines if line)
+
+
+def test_docstrings_tell_the_truth() -> None:
+    for module in (malus, sys.modules["malus.surface"], sys.modules["malus.air"]):
+        assert doctest.testmod(module, extraglobs={"malus": malus, "np": np}).failed == 0
