@@ -107,6 +107,10 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
       {"/geometry/0/facet_prefix", "a\tb", "has a control character in a text"},
       {"/bands", json::parse(R"([{"name": "a,b", "center_nm": 550}])"),
        "bands[0].name = \"a,b\""},
+      {"/bands", json::array({{{"name", std::string(65, 'a')}, {"center_nm", 550}}}),
+       "give a name of 1 to 64 letters"},
+      {"/bands", json::parse(R"([{"name": "red ", "center_nm": 550}])"),
+       "bands[0].name = \"red \""},
       {"/geometry/1/ground/z_m", -1e300,
        "geometry[1].ground.z_m = -1e+300 m: is not allowed here; give the height of the plane "
        "in m, -1e9 to 1e9"},

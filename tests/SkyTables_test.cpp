@@ -170,8 +170,11 @@ TEST(SkyTablesInvariant, RefusesWithASentence) {
   EXPECT_EQ(messageOf(good), "");
   EXPECT_NE(messageOf(measured(300, SkyConvention::malus, 60)).find("hole"), std::string::npos);
   EXPECT_EQ(messageOf(good + "45,123,500,0,0,0\n"), "") << "a dark place is none to refuse";
-  EXPECT_NE(messageOf(good + "45,123,500,-1e-9,0,0\n").find("must not be negative"),
-            std::string::npos);
+  for (const char* beyond : {"-1e-9", "1.1e12", "1e41"})
+    EXPECT_NE(messageOf(good + "45,123,500," + beyond + ",0,0\n").find("must be 0 to 1e+12"),
+              std::string::npos)
+        << beyond;
+  EXPECT_EQ(messageOf(good + "45,123,500,1e12,0,0\n"), "");
   std::string layout = good;
   layout.replace(layout.find("scattered"), 9, "anywhere");
   EXPECT_NE(messageOf(layout).find("scattered"), std::string::npos);
