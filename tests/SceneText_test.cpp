@@ -1,4 +1,4 @@
-// Where the values of a scene file stand, and what is said of a broken one (nw/files/SceneText.nw).
+// Where the values of a scene file stand, and what is said of a broken one (nw/files/SceneText.nw, nw/base/Refusal.nw).
 #include "malus/files/SceneText.hpp"
 
 #include <gtest/gtest.h>
