@@ -14,8 +14,8 @@ PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeig
            libembree-dev libopenimageio-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev \
            python3-dev pybind11-dev python3-numpy python3-xarray python3-matplotlib
 BOOK    := latexml universal-ctags python3-lxml python3-pybtex fonts-texgyre fonts-texgyre-math
-# other people's readers of our cubes, and a judge of HTML, for the tests alone
-TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 tidy
+# other people's readers of our cubes, judges of HTML and manual pages, and shells, for the tests alone
+TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 tidy groff-base zsh fish
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
 

@@ -321,6 +321,7 @@ TEST(AddingDoublingInvariant, RefusesTheImpossible) {
   const Scatterer air = rayleighScatterer(0);
   EXPECT_THROW(AddingDoubling({}, 0.5, 0, 1, {0.5}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, -1}}}, 0.5, 0, 1, {0.5}), MathError);
+  EXPECT_THROW(AddingDoubling({{{air, 1e3}}}, 0.5, 0, 1, {0.5}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0, 0, 1, {0.5}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 0, 1, {0.0}), MathError);
   EXPECT_THROW(AddingDoubling({{{air, 0.1}}}, 0.5, 1.1, 1, {0.5}), MathError);

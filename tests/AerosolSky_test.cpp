@@ -141,3 +141,33 @@ TEST(AerosolSkyIdentity, AFileMayHoldSeveralWavelengths) {
         << error.what();
   }
 }
+
+// The horizon is sharp: a hundredth of a degree below it there is the ground, down to the nadir.
+TEST(AerosolSkyIdentity, TheGroundBeginsAtTheHorizon) {
+  const SpectralGridPtr grid = SpectralGrid::make({550});
+  const SkyEntry& entry = skyEntry("rayleigh", {});
+  const Settings settings = settingsOf(
+      entry, grid, {{"aerosol", spheroids()}, {"aerosol_tau", "0.2"}, {"albedo", "0.3"}});
+  const MadeSky made = entry.make(settings, {grid, sunAt(grid, 50, 120)});
+  const auto brightness = [&](double zenith_deg) {
+    CDSpectralVector<CDStokesVector> light(grid);
+    made.sky->radiance(compassDirection(zenith_deg * degree, 10 * degree), light);
+    return light[0].getScalar();
+  };
+  const double ground = brightness(135);
+  for (const double zenith : {90.01, 90.5, 91.0, 120.0, 179.9})
+    EXPECT_EQ(brightness(zenith), ground) << zenith;
+  EXPECT_GT(std::abs(brightness(89.99) / ground - 1), 0.05) << "negative control";
+}
+
+TEST(AerosolSkyIdentity, ParticlesMayAbsorbAnyShare) {
+  const SpectralGridPtr grid = SpectralGrid::make({550});
+  const SkyEntry& entry = skyEntry("rayleigh", {});
+  const auto with = [&](const std::string& albedo) {
+    return settingsOf(
+        entry, grid,
+        {{"aerosol", spheroids()}, {"aerosol_tau", "0.2"}, {"aerosol_albedo", albedo}});
+  };
+  for (const char* albedo : {"0", "0.5", "1"}) EXPECT_NO_THROW(with(albedo)) << albedo;
+  EXPECT_THROW(with("1.01"), InputError);
+}

@@ -239,3 +239,34 @@ TEST(BRDFBasisIdentity, ImpossibleSumsAreRefused) {
   EXPECT_THROW(fitBasis(BRDFDiffuse(CDSpectralVector<double>(grid, 0.0), 0), 2), MathError);
   EXPECT_THROW(fitBasis(copper(), 13), MathError);
 }
+
+// The name of a part says where it stands in the matrix: "02-" in the elements 02 and 20, and nowhere else. A number along a diagonal
+// is alone there. (A sine is nothing in the plane of incidence, so the geometries lie outside of it.)
+TEST(BRDFBasisIdentity, APartIsWhereItsNameSays) {
+  const auto grid = SpectralGrid::make({500.0});
+  const BasisCoefficients all = randomCoefficients(3, 0.2, grid);
+  for (std::size_t p = 0; p < 16; ++p) {
+    BasisCoefficients one = all;
+    for (std::size_t q = 0; q < 16; ++q)
+      if (q != p) std::fill(one.parts[q].begin(), one.parts[q].end(), 0.0f);
+    const BRDFBasis model(one);
+    const std::string name = basis_parts[p].name;
+    const int j = name[0] - '0', k = name[1] - '0';
+    std::array<double, 16> most{};
+    for (const Angles& angles : someAngles(20, 1.2)) {
+      const CDMuellerMatrix f = model.getBRDF(angles.there()).at(0);
+      for (int i = 0; i < 16; ++i)
+        most[i] = std::max(most[i], std::abs(f.getMueller(i / 4, i % 4)));
+    }
+    for (int i = 0; i < 16; ++i) {
+      const bool named = i == 4 * j + k || i == 4 * k + j;
+      // the axes of incidence turn: elements of rows and columns 1 and 2 mix with each other, 0 and 3 do not
+      const auto kind = [](int row) { return row == 0 || row == 3 ? row : 1; };
+      if (kind(i / 4) == kind(j) && kind(i % 4) == kind(k)) continue;
+      if (kind(i / 4) == kind(k) && kind(i % 4) == kind(j)) continue;
+      EXPECT_FALSE(named);
+      EXPECT_LT(most[i], 1e-9) << name << " is seen in " << i / 4 << i % 4;
+    }
+    EXPECT_GT(std::max(most[4 * j + k], most[4 * k + j]), 1e-6) << name;
+  }
+}

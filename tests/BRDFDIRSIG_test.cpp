@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "ModelChecks.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/surface/ModelRegistry.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -141,4 +143,18 @@ TEST(BRDFDIRSIGIdentity, ImpossibleSurfacesAreRefused) {
   EXPECT_THROW(surface(0.1, 0.1, 91, cone), MathError);
   EXPECT_THROW(surface(0.1, 0.1, 20, cone).getDHR(pi / 2), MathError);
   EXPECT_THROW(surface(0.1, 0.1, 20, cone).sample({0, 0, -1}, 0.5, 0.5, 0.5), MathError);
+}
+
+// A height in 1/sr of up to a thousand million is taken: a lobe of a few seconds of arc. More is no surface.
+TEST(BRDFDIRSIGIdentity, TheHeightOfTheLobeHasALimit) {
+  const ModelEntry& entry = modelEntry("dirsig", {});
+  const auto grid = SpectralGrid::make({550.0});
+  const auto settings = [&](const std::string& height) {
+    return checkedSettings(
+        entry,
+        {{"reflectance", {"0", {}}}, {"height", {height, {}}}, {"width_deg", {"20", {}}}},
+        grid);
+  };
+  EXPECT_NO_THROW(settings("1e9"));
+  EXPECT_THROW(settings("1.001e9"), InputError);
 }

@@ -114,6 +114,13 @@ TEST(BRDFDiffuseIdentity, ScoreIsThatOfTheBaseClassAndNothingComesFromBelow) {
   CDSpectralVector<CDStokesVector> in(grid(), CDStokesVector(1)), out(grid());
   model.scatter(below, 1, in, out);
   EXPECT_EQ(out.at(2).getScalar(), 0);
+  // light along the surface falls on nothing, whatever its weight says
+  const std::vector<float> light(12, 1.0f);
+  const float one = 1, zero = 0, above = 0.5f;
+  model.gatherEach({0, 0, 1}, {1, &one, &zero, &zero, &one}, light, out);
+  EXPECT_EQ(out.at(2).getScalar(), 0);
+  model.gatherEach({0, 0, 1}, {1, &one, &zero, &above, &one}, light, out);
+  EXPECT_GT(out.at(2).getScalar(), 0) << "negative control";
 }
 
 TEST(BRDFDiffuseIdentity, ImpossibleSurfacesAreRefused) {

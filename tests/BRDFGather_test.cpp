@@ -1,4 +1,5 @@
-// The light of many directions at once (nw/surface/CDBRDFModel.nw and the two models that have a fast way).
+// The light of many directions at once: the models that have a fast way (nw/surface/BRDFTorranceSparrow.nw,
+// nw/surface/BRDFDiffuse.nw) beside the plain one.
 #include <gtest/gtest.h>
 
 #include <cmath>

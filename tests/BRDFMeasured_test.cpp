@@ -433,6 +433,26 @@ TEST(BRDFMeasuredPublished, AMERLFileHasTheSizesOfMERL) {
   EXPECT_EQ(sizes, (std::array<std::int32_t, 3>{90, 90, 180}));
 }
 
+// One cell of an angle is a table too: the reflection does not depend on it.
+TEST(BRDFMeasuredIdentity, AMERLFileMayHaveOneCellOfAnAngle) {
+  const Scratch scratch;
+  std::string bytes;
+  for (const std::int32_t size : {2, 2, 1}) append(bytes, size);
+  for (int i = 0; i < 12; ++i) append(bytes, 100.0);
+  put(scratch / "m", bytes);
+  EXPECT_NO_THROW(readMERL(scratch / "m", {450, 550, 650}));
+}
+
+// Another program's reader goes by the types in the head: 3 are whole numbers of 16 bits, 10 are floats of 32.
+TEST(BRDFMeasuredPublished, ATensorFileNamesItsTypes) {
+  const std::string bytes = tensorFile(tabulate(metal(), 4));
+  const auto typeOf = [&](const std::string& name) {
+    return int(bytes.at(bytes.find(name) + name.size() + 2));
+  };
+  EXPECT_EQ(typeOf("wvls"), 3);
+  for (const char* name : {"phi_d", "theta_d", "theta_h"}) EXPECT_EQ(typeOf(name), 10) << name;
+}
+
 TEST(BRDFMeasuredIdentity, WhatNoSurfaceCouldDoIsCounted) {
   MuellerTable table = tabulate(metal(), 6);
   const TableReport good = examine(table);

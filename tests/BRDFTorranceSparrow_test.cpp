@@ -588,6 +588,20 @@ TEST(BRDFTorranceSparrowInvariant, SamplesFollowTheirDensity) {
   EXPECT_GT(draw(mixed, mixed, 0.8).p_value, false_alarm);
 }
 
+// Without a diffuse term all draws go to the facets: at the mirror image the density of sigma = 0.1 is 1/(8 pi sigma^2 cos) by the
+// lobe's two deviations, 2 sigma and 2 sigma cos; the cosine's is below 1/pi.
+TEST(BRDFTorranceSparrowIdentity, FacetsAloneGetAllDraws) {
+  const double sigma = 0.1, zenith = 0.5;
+  TorranceSparrowOptions alone = reciprocal;
+  alone.diffuse = DiffuseTerm::none;
+  const BRDFTorranceSparrow model(1.5, 0, sigma, alone);
+  const double lobe = 1 / (8 * pi * sigma * sigma * std::cos(zenith));
+  const double density =
+      model.density(CDVector::fromAngles(zenith, 0), CDVector::fromAngles(zenith, pi));
+  EXPECT_NEAR(density / lobe, 1, 0.1);  // of order sigma^2 cot, and masking
+  EXPECT_GT(lobe, 10 / pi) << "negative control: far from the cosine's";
+}
+
 TEST(BRDFTorranceSparrowInvariant, NegativeControlAnotherDensityIsNoticed) {
   const BRDFTorranceSparrow model(0.405, 2.95, 0.3, reciprocal),
       rougher(0.405, 2.95, 0.31, reciprocal);

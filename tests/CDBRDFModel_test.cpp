@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "ChiSquared.hpp"
 #include "malus/base/Error.hpp"
@@ -78,6 +79,42 @@ TEST(CDBRDFModelIdentity, ScatterIsTheMatrixTimesTheVectorAdded) {
       EXPECT_NEAR(sum.at(band).getStokes(i), (i == 0) + 0.5 * row, 1e-15);
     }
     EXPECT_TRUE(sum.isPolarized(band));  // by the matrix, by the light, by the matrix
+  }
+}
+
+// What the class gathers for models that have no loop of their own is the sum of scatter; nothing comes from below, and light
+// without polarisation stays so where the matrix lets it.
+TEST(CDBRDFModelIdentity, GatheringIsTheSumOfScatter) {
+  const Polynomial model(grid());
+  const CDVector viewer = CDVector::fromAngles(0.6, 0);
+  const std::vector<CDVector> sources{CDVector::fromAngles(0.5, 2),
+                                      CDVector::fromAngles(1.2, 4),
+                                      CDVector::fromAngles(2, 1)};  // the last from below
+  std::vector<float> x, y, z, weight{0.5f, 0.25f, 1};
+  std::vector<float> stokes(3 * 4 * 3, 0.0f), polarized = stokes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    x.push_back(float(sources[i].x)), y.push_back(float(sources[i].y));
+    z.push_back(float(sources[i].z));
+    for (std::size_t band = 0; band < 3; ++band) stokes[i * 12 + band] = float(1 + i + band);
+  }
+  polarized = stokes, polarized[3] = 0.5f;
+  const LightDirections from{3, x.data(), y.data(), z.data(), weight.data()};
+  for (const auto& light : {stokes, polarized}) {
+    CDSpectralVector<CDStokesVector> sum(grid()), byhand(grid());
+    model.gatherEach(viewer, from, light, sum);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CDSpectralVector<CDStokesVector> one(grid());
+      for (std::size_t band = 0; band < 3; ++band)
+        one[band] = CDStokesVector(light[i * 12 + band], light[i * 12 + 3 + band], 0, 0);
+      model.scatter(BRDFGeometry::fromDirections({x[i], y[i], z[i]}, viewer), weight[i], one,
+                    byhand);
+    }
+    for (std::size_t band = 0; band < 3; ++band) {
+      for (int c = 0; c < 4; ++c)
+        EXPECT_NEAR(sum.at(band).getStokes(c), byhand.at(band).getStokes(c), 1e-14);
+      EXPECT_GT(sum.at(band).getScalar(), 0.05) << "negative control";
+    }
+    EXPECT_EQ(sum.isPolarized(1), light[3] != 0) << "the second band's matrix is a number";
   }
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <string>
 
 #include "ChiSquared.hpp"
 #include "malus/base/Error.hpp"
@@ -309,6 +310,11 @@ TEST(DirectionSamplingIdentity, ImpossibleSamplingsAreRefused) {
   EXPECT_THROW(randomSampling(0, 1, random), MathError);
   EXPECT_THROW(uniformGridSampling(0, 5, 1), MathError);
   EXPECT_THROW(uniformGridSampling(5, 0, 1), MathError);
+  try {
+    uniformGridSampling(0, 5, 1);
+  } catch (const MathError& error) {
+    EXPECT_NE(std::string(error.what()).find('0'), std::string::npos) << error.what();
+  }
   for (const double deviation : {-0.1, 1.1, not_a_number})
     EXPECT_THROW(uniformGridSampling(5, 5, 1, deviation, random), MathError);
   EXPECT_THROW(adaptiveSampling([](double, double) { return not_a_number; }, 5, 1), MathError);

@@ -273,3 +273,17 @@ TEST(FurnaceInvariant, ANarrowLobeIsRefusedToDirectionsThatMissIt) {
   EXPECT_GT(trial(0.1, Sampling::gridRotated, 7).all_bounces, 0.01);
   EXPECT_LT(trial(0.2, Sampling::gridRotated, 2001).all_bounces, 0.01);
 }
+
+// The trial looks from 0, 15, ... 75 degrees, and names the one at which a grid is worst.
+TEST(FurnaceIdentity, TheTrialNamesTheViewerItLookedFrom) {
+  int oblique = 0;
+  for (const int rays : {9, 33, 91}) {
+    const SamplingTrial trial =
+        trySampling(plate(facets(1.5, 0, 0.3)), {.sampling = Sampling::grid, .rays = {rays}});
+    const double zenith_deg = trial.zenith_rad / degree;
+    EXPECT_NEAR(zenith_deg, 15 * std::round(zenith_deg / 15), 1e-9);
+    EXPECT_LE(zenith_deg, 75 + 1e-9);
+    oblique += zenith_deg > 1;
+  }
+  EXPECT_GT(oblique, 0) << "negative control: rough glass is not worst from above every time";
+}

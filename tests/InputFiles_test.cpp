@@ -1,4 +1,5 @@
-// Opening, sizes and names of files that come from others (nw/base/InputFiles.nw).
+// Opening, sizes and names of files that come from others (nw/base/InputFiles.nw), and the spelling
+// of their letters (nw/base/Error.nw).
 #include "malus/base/InputFiles.hpp"
 
 #include <gtest/gtest.h>

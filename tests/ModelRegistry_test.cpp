@@ -249,3 +249,9 @@ TEST(ModelRegistryIdentity, AnotherDiffuseTermIsReciprocal) {
   entry.traits.example += " diffuse=reciprocal";
   EXPECT_LT(reciprocityError(*example(entry)), irreciprocal);
 }
+
+TEST(ModelRegistryIdentity, ASmoothFaceHasTheLeastSlope) {
+  EXPECT_EQ(slopeOf(0.2), 0.2);
+  EXPECT_EQ(slopeOf(1e-6), 1e-6);
+  EXPECT_EQ(slopeOf(0), 1e-6);
+}

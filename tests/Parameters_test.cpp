@@ -33,6 +33,11 @@ std::string complaint(const Arguments& arguments,
 Argument written(const std::string& text) { return {text, {"command line", 0, "--x"}}; }
 }  // namespace
 
+TEST(ParametersIdentity, SettingsWithoutAPlaceAreTheModels) {
+  EXPECT_EQ(Settings{}.place.file, "model");
+  EXPECT_EQ(Settings{}.place.line, 0);
+}
+
 TEST(ParametersIdentity, ValuesDefaultsAndWhatIsAbsent) {
   const Settings s = checked({{"share", written("0.25")}, {"depth", written("2")}});
   EXPECT_EQ(s.numbers.at("share"), 0.25);

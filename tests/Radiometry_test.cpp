@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "malus/air/RayleighSky.hpp"
 #include "malus/base/Error.hpp"
@@ -516,4 +517,16 @@ TEST(RadiometryIdentity, PolarisedSkyIsTheSumOfItsDirections) {
   const CDStokesVector control = skySum(*wrong, *copper(), normal, to_viewer);
   EXPECT_GT(apart(found, control), 1e-3 * expected.getScalar())
       << "negative control: the other sign of S2";
+}
+
+// Directions of no weight fill a list up to whole bundles, and no further.
+TEST(RadiometryIdentity, AListIsFilledUpToTheNextBundle) {
+  for (const auto& [size, full] :
+       {std::pair{1u, 16u}, {15u, 16u}, {16u, 16u}, {17u, 32u}, {32u, 32u}}) {
+    HemisphereRays rays;
+    for (unsigned i = 0; i < size; ++i) rays.add({0, 0, 1}, 0.5);
+    rays.fillUp(16);
+    EXPECT_EQ(rays.size(), full) << size;
+    for (unsigned i = 0; i < full; ++i) EXPECT_EQ(rays.weight[i], i < size ? 0.5f : 0.0f);
+  }
 }

@@ -387,6 +387,8 @@ TEST(RayleighLightInvariant, RefusesTheImpossible) {
     EXPECT_THROW(RayleighLight(air, sun, 0, 1), MathError);
   EXPECT_THROW(RayleighLight(air, 0.5, 1.01, 1), MathError);
   EXPECT_THROW(RayleighLight(air, 0.5, 0, -1), MathError);
+  for (const double irradiance : {0.0, 0.5})
+    EXPECT_NO_THROW(RayleighLight(air, 0.5, 0, irradiance));
   const RayleighLight light(air, 0.5, 0.2, 1);
   EXPECT_THROW(light.down(-0.1, {}), MathError);
   EXPECT_THROW(light.up(1.1, {}), MathError);

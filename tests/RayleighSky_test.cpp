@@ -5,6 +5,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -246,4 +248,10 @@ TEST(RayleighSkyInvariant, RefusesTheImpossible) {
       RayleighSky(sunFrom(30, 0), RayleighSky::clearAir(SpectralGrid::make({500.0}), 0)),
       GridError);
   EXPECT_THROW(RayleighPathRadiance(nullptr), MathError);
+  const auto sky =
+      std::make_shared<RayleighSky>(sunFrom(30, 0), RayleighSky::clearAir(grid, 0.4));
+  for (const double height : {-1.0, 0.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(RayleighPathRadiance(sky, 0, height), MathError) << height;
+  EXPECT_THROW(RayleighPathRadiance(sky, std::nan("")), MathError);
+  EXPECT_NO_THROW(RayleighPathRadiance(sky, 0, 8000));
 }

@@ -149,7 +149,9 @@ TEST(ScattererInvariant, RefusesWhatIsNoScatterer) {
   EXPECT_NE(refused("# convention: dehaan\n" + columns + "0,2,0,0,0,0,0\n"), "");
   EXPECT_NE(refused("# convention: dehaan\n" + columns + first + "2,0.5,3,0,0,0,0\n"), "");
   EXPECT_NE(refused("# convention: dehaan\n" + columns + first + "1,-3,0,0,0,0,0\n"), "");
-  EXPECT_THROW(henyeyGreensteinScatterer(1), MathError);
+  for (const double g : {1.0, 0.9501, -0.9501})
+    EXPECT_THROW(henyeyGreensteinScatterer(g), MathError);
+  for (const double g : {0.95, -0.95}) EXPECT_NO_THROW(henyeyGreensteinScatterer(g));
   EXPECT_THROW(Scatterer({}), MathError);
 }
 

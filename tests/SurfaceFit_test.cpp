@@ -125,6 +125,19 @@ TEST(SurfaceFitIdentity, APolishedSampleGivesItsIndex) {
   EXPECT_GT(std::abs(other.values[0] - 0.405), 1e-3);  // negative control
 }
 
+// Each parameter that is not fixed is found wherever the others are held. A diffuse term of zero is not a roughness of zero.
+TEST(SurfaceFitIdentity, OneParameterMayBeHeld) {
+  TorranceSparrowOptions alone;
+  alone.diffuse = DiffuseTerm::none;
+  const auto samples = laboratory(BRDFTorranceSparrow(0.405, 2.95, 0.2, alone), 0.01);
+  const std::array<double, 4> truth{0.405, 2.95, 0.2, 0};
+  const SurfaceFit fit = fitSurface(samples, {{{}, {}, {}, 0.0}});
+  for (std::size_t j = 0; j < 4; ++j)
+    EXPECT_NEAR(fit.values[j], truth[j], 1e-6) << surface_parameter_names[j];
+  EXPECT_GT(std::abs(fitSurface(samples, {{{}, {}, {}, 1.0}}).values[2] - 0.2), 1e-4)
+      << "negative control: another diffuse term bends the others";
+}
+
 // 60 runs: the ratio of scatter and stated error is known to 1/sqrt(120) = 9 %; four of these.
 TEST(SurfaceFitInvariant, ParametersScatterAsTheirErrorsSay) {
   const auto exact = laboratory(BRDFTorranceSparrow(0.405, 2.95, 0.2), 0.01);
