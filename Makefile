@@ -22,7 +22,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -69,6 +69,15 @@ BASELINE ?= x86-64-v2
 install: need-program $(BUILD)/CMakeCache.txt ## install programs, libraries, headers and data (PREFIX=/usr/local, DESTDIR=)
 	@cmake --build $(BUILD) -j $(JOBS) --target programs
 	@cmake/install.sh $(BUILD) "$(PREFIX)" "$(DESTDIR)" "$(BASELINE)" $(JOBS) $(GENERATOR)
+
+empty :=
+comma := ,
+deb: need-book ## Debian packages of programs, library, Python module and book, in build/deb
+	@$(NEED) debhelper dh-python dpkg-dev
+	@rm -rf $(BUILD)/deb && mkdir -p $(BUILD)/deb/malus && cp -r debian $(BUILD)/deb/malus/
+	@sed 's/@BUILD@/$(subst $(empty) ,$(comma) ,$(strip $(PROGRAM) $(BOOK)))/' debian/control.in >$(BUILD)/deb/malus/debian/control
+	@cd $(BUILD)/deb/malus && TOP=$(CURDIR) JOBS=$(JOBS) dpkg-buildpackage -b -d -us -uc >../build.log 2>&1 || { tail -n 30 ../build.log; exit 1; }
+	@ls $(BUILD)/deb/*.deb
 
 ladder: need-program $(BUILD)/CMakeCache.txt ## link each floor with those below it and no others
 	@cmake --build $(BUILD) -j $(JOBS) --target ladder

@@ -1,11 +1,14 @@
 #!/bin/sh
-# fresh-machine.sh [DIRECTORY]: prove that malus needs git, make and nothing else.
+# fresh-machine.sh [--packages] [DIRECTORY]: prove that malus needs git, make and nothing else.
 #
 # Makes a minimal Debian 12 root in DIRECTORY (default: a new one below /var/tmp) that holds git and make, clones
 # the committed HEAD into it, and types there what the README tells a new user to type. Package sources
-# are those of this machine. Wants root (debootstrap and chroot do) and Debian's package debootstrap.
+# are those of this machine. With --packages the root holds neither: the packages of build/deb, which `make deb` made, are
+# installed into it, and their own tests (debian/tests) run there. Wants root (debootstrap and chroot do) and Debian's package debootstrap.
 set -eu
 project=$(cd "$(dirname "$0")/.." && git rev-parse --show-toplevel)
+packages=
+[ "${1:-}" != --packages ] || { packages=yes; shift; }
 root=${1:-$(mktemp -d /var/tmp/malus-fresh-XXXXXX)}
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)
 
@@ -25,7 +28,7 @@ inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root T
 
 if [ ! -e "$root/bin/sh" ]; then
   say "a minimal Debian 12 in $root"
-  debootstrap --variant=minbase --include=git,make,ca-certificates bookworm "$root" "$mirror" >"$root.log" 2>&1 ||
+  debootstrap --variant=minbase --include=$([ -n "$packages" ] || echo git,make,)ca-certificates bookworm "$root" "$mirror" >"$root.log" 2>&1 ||
     { tail -n 5 "$root.log" >&2; exit 1; }
   touch "$root/$mark"
 fi
@@ -34,6 +37,24 @@ cp -r /etc/apt/sources.list.d /etc/apt/apt.conf.d "$root/etc/apt/"
 cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
 mkdir -p "$root/proc" "$root/dev"
 mount -t proc proc "$root/proc" 2>/dev/null && trap 'umount "$root/proc"' EXIT
+
+if [ -n "$packages" ]; then
+  mkdir -p "$root/root/packages"
+  cp "$project"/build/deb/*.deb "$root/root/packages/"
+  cp -r "$project/debian/tests" "$root/root/"
+  say "apt install ./malus_*.deb"
+  inside "cd /root/packages && apt-get update -q >/dev/null && apt-get install -y -q ./malus_*.deb >/root/apt.log 2>&1 || { tail /root/apt.log; exit 1; }"
+  sed -n 's/^Tests: //p' "$project/debian/tests/control" | while read -r name; do
+    wanted=$(grep -A1 "^Tests: $name\$" "$project/debian/tests/control" | sed -n 's/^Depends: //p' | tr -d ,)
+    say "debian/tests/$name, with $wanted"
+    inside "cd /root/packages && names= && for one in $wanted; do set -- ./\${one}_*.deb; [ -e \"\$1\" ] && one=\$1; names=\"\$names \$one\"; done
+      apt-get install -y -q \$names >/root/apt.log 2>&1 || { tail /root/apt.log; exit 1; }
+      sh /root/tests/$name"
+  done
+  say "malus-doc"
+  inside "cd /root/packages && apt-get install -y -q ./malus-doc_*.deb >/root/apt.log 2>&1 && test -s /usr/share/doc/malus/book/index.html && echo 'the book is there'"
+  exit
+fi
 
 say "clone"
 rm -rf "$root/root/malus"
