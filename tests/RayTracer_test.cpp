@@ -319,3 +319,19 @@ TEST(RayTracerIdentity, AnEmptyWorldIsAllSky) {
   const RayTracer tracer(nothing);
   EXPECT_FALSE(tracer.intersect({}, {0, 0, -1}));
 }
+
+// The caller's geometry becomes another one: a tracer that only referred to it would lose its triangles.
+TEST(RayTracerInvariant, OutlivesTheGeometryThatItWasGiven) {
+  SceneGeometry scene = pyramids({}, true);
+  const RayTracer tracer(scene);
+  const CDVector start{0.1, 0.2, 5}, down{0, 0, -1};
+  const Hit before = tracer.intersect(start, down);
+  ASSERT_TRUE(before);
+  scene = GeometryBuilder().build();
+  const Hit after = tracer.intersect(start, down);
+  EXPECT_EQ(after.t, before.t);
+  EXPECT_EQ(after.normal, before.normal);
+  EXPECT_EQ(tracer.geometry().triangles().size(), pyramids({}, true).triangles().size());
+  EXPECT_NE(tracer.geometry().triangles().size(),
+            scene.triangles().size());  // negative control
+}

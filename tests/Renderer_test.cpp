@@ -32,13 +32,6 @@ CDSpectralVector<double> spectrum(double first, double second) {
   return v;
 }
 
-/// A tracer refers to its geometry: they live together.
-struct Ground {
-  SceneGeometry geometry;
-  RayTracer tracer{geometry};
-  explicit Ground(SceneGeometry of) : geometry(std::move(of)) {}
-};
-
 /// A square metre for each pixel; the quarters of the ground have paints of their own and are lit from the zenith.
 Scene fourQuarters(std::size_t samples = 1) {
   World world;
@@ -63,7 +56,7 @@ Scene fourQuarters(std::size_t samples = 1) {
   view.focal_length_px = 100, view.principal_x = width / 2.0, view.principal_y = height / 2.0;
   RadiometryOptions options;
   options.rays = {1};
-  const auto ground = std::make_shared<Ground>(world.geometry);
+  const auto tracer = std::make_shared<const RayTracer>(world.geometry);
   const Pose above = Pose::looking({0, 0, 100}, {0, 0, -1}, {0, 1, 0});
   return {"",
           "",
@@ -71,7 +64,7 @@ Scene fourQuarters(std::size_t samples = 1) {
           Sensor(view, two_bands, two_bands),
           Platform::fixed(above, 2, 10),
           options,
-          std::shared_ptr<const RayTracer>(ground, &ground->tracer),
+          tracer,
           {},
           {},
           {},
