@@ -13,6 +13,7 @@
 
 #include "ModelChecks.hpp"
 #include "malus/base/Random.hpp"
+#include "malus/base/Refusal.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -254,4 +255,25 @@ TEST(ModelRegistryIdentity, ASmoothFaceHasTheLeastSlope) {
   EXPECT_EQ(slopeOf(0.2), 0.2);
   EXPECT_EQ(slopeOf(1e-6), 1e-6);
   EXPECT_EQ(slopeOf(0), 1e-6);
+}
+
+// What a constructor refuses, and a file that ends too early, is the user's. Anything else is ours, and must not be told as his.
+TEST(ModelRegistryIdentity, OnlyARefusalIsTheUsersMistake) {
+  ModelSettings settings;
+  settings.place = {"scene.json", 7, "/materials/paint", 0};
+  const auto making = [&](const auto& error) {
+    return [&] {
+      orRefuse(settings, "paint", "give less",
+               [&]() -> std::unique_ptr<CDBRDFModel> { throw error; });
+    };
+  };
+  try {
+    making(Refusal("too bright"))();
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "scene.json:7: /materials/paint: paint: too bright; give less");
+  }
+  EXPECT_THROW(making(InterpolationError("ends at 600 nm"))(), InputError);
+  EXPECT_THROW(making(MathError("a division by zero"))(), MathError);
+  EXPECT_THROW(making(GridError("two grids"))(), GridError);
 }
