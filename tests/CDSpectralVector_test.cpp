@@ -517,7 +517,7 @@ TEST(CDSpectralVectorIdentity, ForbiddenOperations) {
   EXPECT_THROW(Scalars(grid, {1, 2}), GridError);
   EXPECT_THROW(Scalars(grid, std::vector<double>{}), GridError);
   EXPECT_THROW(Scalars(nullptr), GridError);
-  EXPECT_THROW(v.resampled(nullptr), GridError);
+  EXPECT_THROW((void)v.resampled(nullptr), GridError);
   EXPECT_EQ(v.at(2), 3);
 }
 

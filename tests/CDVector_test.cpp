@@ -81,9 +81,9 @@ TEST(CDVectorIdentity, ForbiddenOperations) {
   EXPECT_THROW((CDVector{1, 2, 3}) / -0.0, MathError);
   EXPECT_THROW(zero.getZenith(), MathError);
   EXPECT_THROW(zero.getAzimuth(), MathError);
-  EXPECT_THROW(normalized(zero), MathError);
+  EXPECT_THROW((void)normalized(zero), MathError);
   for (const double bad : {not_a_number, infinite, -infinite}) {
-    EXPECT_THROW(normalized({1, bad, 0}), MathError) << bad;
+    EXPECT_THROW((void)normalized({1, bad, 0}), MathError) << bad;
     EXPECT_THROW((CDVector{0, 0, bad}).getZenith(), MathError) << bad;
     EXPECT_THROW(CDVector::fromAngles(bad, 0), MathError) << bad;
     EXPECT_THROW(CDVector::fromAngles(0, bad), MathError) << bad;
