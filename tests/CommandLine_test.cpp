@@ -72,8 +72,7 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
        "--longitude-deg, --time, --until, --step-min, --input, --out\n"},
       {"--vesion",
        "command line: --vesion: is no flag of malus; did you mean --version? known are: "
-       "--help, "
-       "--version\n"},
+       "--help, --version, --describe\n"},
       {"schema surplus",
        "command line: The following argument was not expected: surplus; malus schema --help "
        "shows "
