@@ -268,9 +268,12 @@ TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
 }
 
-TEST(HarnessInvariant, AFunctionWithoutARowOfTheInventoryIsADefect) {
+TEST(HarnessInvariant, AFunctionWithoutARowOfTheInventoryOrBesideAnotherIsADefect) {
   const Data data;
   const std::vector<RegisteredItem> stray{{"T7", everyVerdict}};
   EXPECT_THROW(reproduce({{}, data / "out", data.path}, readInventory(data.path), stray),
+               InvariantError);
+  const std::vector<RegisteredItem> twice{{"T1", everyVerdict}, {"T1", silent}};
+  EXPECT_THROW(reproduce({{}, data / "out", data.path}, readInventory(data.path), twice),
                InvariantError);
 }

@@ -9,14 +9,14 @@
 
 #include "Scratch.hpp"
 #include "malus/base/Table.hpp"
-#include "malus/thesis/Harness.hpp"
+#include "malus/thesis/Inventory.hpp"
 
 /// The item after its function ran, on the committed printed values unless `data` says otherwise.
-inline malus::Item ran(const std::string& id, malus::ItemFunction function,
+inline malus::Item ran(const std::string& id,
                        const std::filesystem::path& data = "validation") {
   const Scratch scratch;  // an item may write files of its own
   malus::Item item(id, scratch.path, data);
-  function(item);
+  malus::functionOf(id, malus::registeredItems())(item);
   return item;
 }
 

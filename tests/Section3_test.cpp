@@ -1,5 +1,5 @@
 // The bench of thesis chapter 3 and the verdicts of its items (nw/thesis/Section3.nw).
-#include "malus/thesis/Section3.hpp"
+#include "malus/thesis/Section3Matrices.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,7 +12,6 @@
 
 #include "Items.hpp"
 #include "malus/thesis/Bench.hpp"
-#include "malus/thesis/Slips.hpp"
 
 using namespace malus;
 
@@ -113,19 +112,16 @@ TEST(Section3Identity, AGreyFilterKeepsTheStateAndHalvesTheLight) {
 }
 
 TEST(Section3Published, TablesAndFiguresAreReproduced) {
-  const std::pair<const char*, ItemFunction> items[] = {
-      {"T3.1", reproduceT31}, {"T3.2", reproduceT32}, {"F3.1", reproduceF31},
-      {"F3.2", reproduceF32}, {"F3.3", reproduceF33}, {"F3.4", reproduceF34},
-      {"F3.9", reproduceF39}};
-  for (const auto& [id, function] : items) {
-    const Item item = ran(id, function);
+  const std::vector<std::string> items{"T3.1", "T3.2", "F3.1", "F3.2", "F3.3", "F3.4", "F3.9"};
+  for (const std::string& id : items) {
+    const Item item = ran(id);
     EXPECT_GE(item.claims().size(), 3u) << id;
     EXPECT_EQ(named(item, Verdict::reproduced).size(), item.claims().size()) << id;
   }
 }
 
 TEST(Section3Published, OnlyTheQuarterWavePlatesOfTable33AreMisnamed) {
-  const Item item = ran("T3.3", reproduceT33);
+  const Item item = ran("T3.3");
   EXPECT_EQ(named(item, Verdict::erratum),
             (std::set<std::string>{"quarter-wave-plate-fast-axis-horizontal",
                                    "quarter-wave-plate-fast-axis-vertical"}));
@@ -133,13 +129,13 @@ TEST(Section3Published, OnlyTheQuarterWavePlatesOfTable33AreMisnamed) {
 }
 
 TEST(Section3Published, Figure37IsReproducedExceptTheOrderInItsProse) {
-  const Item item = ran("F3.7", reproduceF37);
+  const Item item = ran("F3.7");
   EXPECT_EQ(named(item, Verdict::erratum), (std::set<std::string>{"order"}));
   EXPECT_EQ(named(item, Verdict::reproduced), (std::set<std::string>{"chi", "psi"}));
 }
 
 TEST(Section3Published, EverySlipIsProvedAndEq378StandsAsPrinted) {
-  const Item item = ran("N8", reproduceN8);
+  const Item item = ran("N8");
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"eq3.45", "eq3.77", "eq3.78", "sec3.1.2.4.circle"}));
   EXPECT_EQ(named(item, Verdict::notTestable), (std::set<std::string>{"eq5.10"}));
@@ -152,19 +148,18 @@ TEST(Section3Published, EverySlipIsProvedAndEq378StandsAsPrinted) {
 
 TEST(Section3Published, NegativeControlACorruptedPrintIsSeen) {
   const Corrupted table("T3.2.csv", "vertical,1,-1,0,0", "vertical,1,-1,0,0.001");
-  EXPECT_EQ(named(ran("T3.2", reproduceT32, table.data), Verdict::differs),
+  EXPECT_EQ(named(ran("T3.2", table.data), Verdict::differs),
             (std::set<std::string>{"vertical"}));
   const Corrupted copper("E7.8.csv", "2,3,0.3026", "2,3,0.3036");
-  EXPECT_TRUE(named(ran("N8", reproduceN8, copper.data), Verdict::differs).contains("eq3.77"));
+  EXPECT_TRUE(named(ran("N8", copper.data), Verdict::differs).contains("eq3.77"));
 }
 
 TEST(Section3Published, NegativeControlAReferenceThatNamesWhatItMeansIsNoErratum) {
   const Corrupted references("references.csv", "figure 7.32,S1,figure 7.34",
                              "figure 7.34,S3,figure 7.34");
-  EXPECT_FALSE(
-      named(ran("N8", reproduceN8, references.data), Verdict::erratum).contains("figure7.34"));
+  EXPECT_FALSE(named(ran("N8", references.data), Verdict::erratum).contains("figure7.34"));
 }
 
 TEST(Section3Published, NegativeControlAMissingPrintStopsTheItem) {
-  EXPECT_THROW(ran("T3.1", reproduceT31, "nowhere"), InputError);
+  EXPECT_THROW(ran("T3.1", "nowhere"), InputError);
 }

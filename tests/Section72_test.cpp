@@ -73,14 +73,11 @@ TEST(Section72Published, WhatDiffersIsWhatTheChapterTells) {
   // sec 5.2.1, significant at 45 deg; sec 7.3.1, linear shift; sec 7.3.2: widths at half maximum, forward peaks and their overlay
   struct {
     const char* id;
-    ItemFunction function;
     std::size_t differs;
-  } const items[] = {
-      {"F7.2", reproduceF72, 0}, {"F7.3", reproduceF73, 0},   {"F7.4", reproduceF74, 1},
-      {"F7.5", reproduceF75, 0}, {"F7.6", reproduceF76, 1},   {"F7.7", reproduceF77, 3},
-      {"F7.8", reproduceF78, 1}, {"F7.10", reproduceF710, 0}, {"F7.11", reproduceF711, 0},
-      {"C3", reproduceC3, 1},    {"C4", reproduceC4, 2}};
-  for (const auto& [id, function, differs] : items) {
-    EXPECT_EQ(named(ran(id, function), Verdict::differs).size(), differs) << id;
+  } const items[] = {{"F7.2", 0},  {"F7.3", 0}, {"F7.4", 1}, {"F7.5", 0},
+                     {"F7.6", 1},  {"F7.7", 3}, {"F7.8", 1}, {"F7.10", 0},
+                     {"F7.11", 0}, {"C3", 1},   {"C4", 2}};
+  for (const auto& [id, differs] : items) {
+    EXPECT_EQ(named(ran(id), Verdict::differs).size(), differs) << id;
   }
 }

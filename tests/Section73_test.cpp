@@ -115,7 +115,7 @@ TEST(Section73Identity, ConesBlur) {
 }
 
 TEST(Section73Invariant, FigureSevenNineHasItsVerdicts) {
-  const Item item = ran("F7.9", reproduceF79);
+  const Item item = ran("F7.9");
   EXPECT_EQ(named(item, Verdict::notTestable),
             (std::set<std::string>{"trend", "outside", "chosen"}));
   EXPECT_EQ(named(item, Verdict::reproduced),

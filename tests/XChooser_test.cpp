@@ -1,5 +1,4 @@
 // The table of the models (nw/thesis/XChooser.nw).
-#include "malus/thesis/XChooser.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +12,7 @@
 using namespace malus;
 
 TEST(XChooserInvariant, ThePromisesAreKeptAndTheTableIsWhole) {
-  const Item item = ran("X.chooser", reproduceXChooser);
+  const Item item = ran("X.chooser");
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"polarised", "diffuse", "reciprocal", "energy"}));
   const std::string rows = valuesOf(item).at("rows");

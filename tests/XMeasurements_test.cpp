@@ -1,5 +1,4 @@
 // The item that measures the table of the DHR (nw/thesis/XMeasurements.nw).
-#include "malus/thesis/XMeasurements.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +11,7 @@ using namespace malus;
 
 namespace {
 const Item& measured() {
-  static const Item item = ran("X.DHR", reproduceXDHR);
+  static const Item item = ran("X.DHR");
   return item;
 }
 }  // namespace

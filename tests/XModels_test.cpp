@@ -11,16 +11,14 @@
 using namespace malus;
 
 namespace {
-const std::map<std::string, ItemFunction> items{
-    {"X.lambert", reproduceXLambert},       {"X.torrance-sparrow", reproduceXTorranceSparrow},
-    {"X.dirsig", reproduceXDIRSIG},         {"X.glossy", reproduceXGlossy},
-    {"X.water", reproduceXWater},           {"X.beard-maxwell", reproduceXBeardMaxwell},
-    {"X.vegetation", reproduceXVegetation}, {"X.sandford", reproduceXSandford}};
+const std::vector<std::string> items{
+    "X.lambert", "X.torrance-sparrow", "X.dirsig",     "X.glossy",
+    "X.water",   "X.beard-maxwell",    "X.vegetation", "X.sandford"};
 }  // namespace
 
 TEST(XModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
-  for (const auto& [id, function] : items) {
-    const Item item = ran(id, function);
+  for (const std::string& id : items) {
+    const Item item = ran(id);
     EXPECT_EQ(named(item, Verdict::differs), std::set<std::string>{}) << id;
     for (const char* question : {"energy", "reciprocity", "realizable"})
       EXPECT_TRUE(named(item, Verdict::reproduced).contains(question)) << id;
@@ -34,7 +32,7 @@ TEST(XModelsInvariant, EveryModelAnswersTheThreeQuestionsAsItsChapterSays) {
 
 // The claims about tables hold, and their numbers are of a size that could have failed them.
 TEST(XModelsInvariant, TablesComeNearerWithTheSquareOfTheStep) {
-  const Item item = ran("X.measured", reproduceXMeasured);
+  const Item item = ran("X.measured");
   EXPECT_EQ(named(item, Verdict::reproduced),
             (std::set<std::string>{"order", "narrow", "wide"}));
   const auto values = valuesOf(item);

@@ -1,5 +1,4 @@
 // The item of the layered paint (nw/thesis/XPaint.nw).
-#include "malus/thesis/XPaint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +16,7 @@ using namespace malus;
 
 namespace {
 const Item& paint() {
-  static const Item item = ran("X.paint", reproduceXPaint);
+  static const Item item = ran("X.paint");
   return item;
 }
 Table tableOf(const std::string& name) {

@@ -1,5 +1,4 @@
 // The item that looks through four cameras and a mosaic (nw/thesis/XPolarimeter.nw).
-#include "malus/thesis/XPolarimeter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ using namespace malus;
 
 namespace {
 const Item& measured() {
-  static const Item item = ran("X.polarimeter", reproduceXPolarimeter);
+  static const Item item = ran("X.polarimeter");
   return item;
 }
 }  // namespace

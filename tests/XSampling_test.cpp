@@ -13,7 +13,7 @@ using namespace malus;
 
 namespace {
 const Item& measured() {
-  static const Item item = ran("X.sampling", reproduceXSampling);
+  static const Item item = ran("X.sampling");
   return item;
 }
 }  // namespace

@@ -1,5 +1,4 @@
 // What the tests notice of planted faults (nw/thesis/XTests.nw), on reports made up here.
-#include "malus/thesis/XTests.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +28,7 @@ struct FaultReport : Scratch {
 
 TEST(XTestsInvariant, TheShareIsThatOfTheCountedFaults) {
   const FaultReport report(380, 20);
-  const Item item = ran("X.tests", reproduceXTests, report.path);
+  const Item item = ran("X.tests", report.path);
   auto verdicts = verdictsOf(item);
   EXPECT_EQ(verdicts["enough"], Verdict::reproduced);
   EXPECT_EQ(verdicts["noticed"], Verdict::reproduced);
@@ -48,12 +47,11 @@ TEST(XTestsInvariant, TheShareIsThatOfTheCountedFaults) {
 
 TEST(XTestsInvariant, OneFaultLessDiffers) {  // negative control
   const FaultReport few(379, 20), unseen(379, 21);
-  EXPECT_EQ(verdictsOf(ran("X.tests", reproduceXTests, few.path))["enough"], Verdict::differs);
-  EXPECT_EQ(verdictsOf(ran("X.tests", reproduceXTests, unseen.path))["noticed"],
-            Verdict::differs);
+  EXPECT_EQ(verdictsOf(ran("X.tests", few.path))["enough"], Verdict::differs);
+  EXPECT_EQ(verdictsOf(ran("X.tests", unseen.path))["noticed"], Verdict::differs);
 }
 
 TEST(XTestsInvariant, ADamagedReportIsRefused) {
   const FaultReport damaged(1, 1, "base/CDVector,x:1,a,b,noticed,perhaps\n");
-  EXPECT_THROW(ran("X.tests", reproduceXTests, damaged.path), InputError);
+  EXPECT_THROW(ran("X.tests", damaged.path), InputError);
 }

@@ -618,5 +618,31 @@ class Parts(unittest.TestCase):
         self.assertEqual(latexml.slug("Add: the (two) Stokes_vectors!"), "add-the-two-stokes-vectors")
 
 
+class CheckTest(unittest.TestCase):
+    """Lengths of files and functions, over the chunks that they consist of."""
+
+    def said_of(self, lines_of_a_function: int, functions: int) -> str:
+        """What the check says of a chapter with so many functions, the middle of each in a chunk of its own."""
+        body = "  ++n;\n" * (lines_of_a_function - 3)
+        chapter = "".join(f"<<Middle {i}>>=\n{body}@\n" for i in range(functions)) + "<<base/Long.cpp>>=\n"
+        chapter += "".join(f"int count{i}(\n    int n) {{\n  // no code\n\n  <<Middle {i}>>\n}}\n" for i in range(functions))
+        with tempfile.TemporaryDirectory() as directory:
+            os.mkdir(os.path.join(directory, "base"))
+            path = os.path.join(directory, "base", "Long.nw")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(chapter + "@\n")
+            run = subprocess.run([os.path.join(WEAVER, "check.py"), path], capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, int(bool(run.stderr)))
+            return run.stderr
+
+    def test_limits_are_kept(self) -> None:
+        self.assertEqual(self.said_of(70, 1), "")
+        self.assertEqual(self.said_of(55, 10), "")
+
+    def test_one_line_more_is_told(self) -> None:
+        self.assertIn("71 lines in a function of base/Long.cpp: int count0(; part it", self.said_of(71, 1))
+        self.assertIn("base/Long.cpp has 560 lines of code", self.said_of(56, 10))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -8,6 +8,7 @@
 2. An include never climbs from a floor to one above it.
 3. Files make no circles: no chapter includes another that leads back to it.
 4. CD begins the names of the thesis, and no others.
+5. A file has 550 lines of code at most, and a function 70, its chunks included.
 """
 import re
 import sys
@@ -19,6 +20,10 @@ THESIS = {"CDPolarimetricMath", "CDVector", "CDStokesVector", "CDMuellerMatrix",
 BEGINS = re.compile(r"^<<(.*)>>=\s*$")
 INCLUDE = re.compile(r'^#include "malus/(\w+)/(\w+)\.')
 OURS = re.compile(r"\bCD[A-Z]\w*")
+ROOT = re.compile(r"\w+/\w+\.(?:plugin\.cpp|[ch]pp)$")
+USE = re.compile(r"^(\s*)<<(.*)>>\s*$")
+MOST_LINES, MOST_OF_A_FUNCTION = 550, 70
+LONGER = {"surface/BRDFTorranceSparrow.cpp": 700}  # one class whose loops share what the compiler must see together
 
 
 def floors_and_names(chapter: str, problems: list[str], homes: dict[str, str], leads: dict[str, set[str]]) -> None:
@@ -63,12 +68,68 @@ def circles(leads: dict[str, set[str]]) -> list[list[str]]:
     return found
 
 
+def chunks_of(chapter: str) -> dict[str, list[str]]:
+    """The lines of code of each chunk, without empty ones and comments."""
+    chunks: dict[str, list[str]] = {}
+    current: list[str] | None = None
+    with open(chapter, encoding="utf-8") as lines:
+        for line in lines:
+            if begin := BEGINS.match(line):
+                current = chunks.setdefault(begin[1], [])
+            elif re.match(r"@( |$)", line):
+                current = None
+            elif current is not None and line.strip() and not line.lstrip().startswith("//"):
+                current.append(line.rstrip("\n"))
+    return chunks
+
+
+def tangled(name: str, chunks: dict[str, list[str]]) -> list[str]:
+    """A chunk with all that it uses."""
+    text: list[str] = []
+    for line in chunks.get(name, []):
+        if use := USE.match(line):
+            text += [use[1] + inner for inner in tangled(use[2], chunks)]
+        else:
+            text.append(line)
+    return text
+
+
+def functions(text: list[str]) -> list[tuple[str, int]]:
+    """First line and length of each function outside of classes."""
+    found: list[tuple[str, int]] = []
+    start: int | None = None
+    depth = 0
+    for number, line in enumerate(text):
+        if re.match(r"#|(inline )?namespace\b|}  // namespace", line):
+            continue
+        start = number if start is None else start
+        bare = re.sub(r'"(\\.|[^"\\])*"|\'(\\.|[^\'\\])\'|//.*', "", line).rstrip()
+        depth += bare.count("{") - bare.count("}")
+        if depth == 0 and bare.endswith((";", "}")):
+            if bare.endswith("}"):
+                found.append((text[start], number + 1 - start))
+            start = None
+    return found
+
+
+def lengths(chapter: str, problems: list[str]) -> None:
+    """Files and functions that are too long."""
+    chunks = chunks_of(chapter)
+    for root in filter(ROOT.match, chunks):
+        text = tangled(root, chunks)
+        if len(text) > LONGER.get(root, MOST_LINES):
+            problems.append(f"{chapter}: {root} has {len(text)} lines of code; part it into chapters of one subject each")
+        problems += [f"{chapter}: {length} lines in a function of {root}: {name}; part it"
+                     for name, length in functions(text) if length > MOST_OF_A_FUNCTION]
+
+
 def main() -> None:
     problems: list[str] = []
     homes: dict[str, str] = {}
     leads: dict[str, set[str]] = {}
     for chapter in sys.argv[1:]:
         floors_and_names(chapter, problems, homes, leads)
+        lengths(chapter, problems)
     problems += [f"nw/{circle[0]}.nw: a circle of includes: {' > '.join(circle)}" for circle in circles(leads)]
     for problem in problems:
         print(problem, file=sys.stderr)
