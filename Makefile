@@ -22,7 +22,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -78,6 +78,15 @@ deb: need-book ## Debian packages of programs, library, Python module and book, 
 	@sed 's/@BUILD@/$(subst $(empty) ,$(comma) ,$(strip $(PROGRAM) $(BOOK)))/' debian/control.in >$(BUILD)/deb/malus/debian/control
 	@cd $(BUILD)/deb/malus && TOP=$(CURDIR) JOBS=$(JOBS) dpkg-buildpackage -b -d -us -uc >../build.log 2>&1 || { tail -n 30 ../build.log; exit 1; }
 	@ls $(BUILD)/deb/*.deb
+
+wheel: need-program $(BUILD)/CMakeCache.txt ## the Python module as a wheel, with the libraries and data that it needs, in build/wheel
+	@rm -rf $(BUILD)/wheel
+	@$(MAKE) install NEED=true PREFIX=/usr DESTDIR=$(CURDIR)/$(BUILD)/wheel/root >/dev/null
+	@python/backend.py $(BUILD)/wheel/root $(BUILD)/wheel
+
+deb-twice: need-book ## build HEAD in two places: packages, wheel and source archive are the same bytes
+	@$(NEED) debhelper dh-python dpkg-dev
+	@tests/twice.sh $(CURDIR) "BASELINE=$(BASELINE)"
 
 ladder: need-program $(BUILD)/CMakeCache.txt ## link each floor with those below it and no others
 	@cmake --build $(BUILD) -j $(JOBS) --target ladder
@@ -149,8 +158,10 @@ soak: need-program $(BUILD)/CMakeCache.txt ## kill, resume, fill the disk and ra
 	@cmake --build $(BUILD) -j $(JOBS) --target malus
 	@tests/soak.py $(BUILD)/malus $(SOAK_SECONDS)
 
-fresh-machine: ## prove the package list in a minimal Debian root (as root)
-	@tests/fresh-machine.sh
+# both prove it; the packages take minutes where they are built already, the source an hour
+fresh-machine: $(if $(filter source,$(STEP)),,deb wheel) ## prove packages, wheel and source in minimal Debian roots (as root; STEP=packages or source: one)
+	@$(if $(filter source,$(STEP)),,tests/fresh-machine.sh --packages)
+	@$(if $(filter packages,$(STEP)),,tests/fresh-machine.sh)
 
 clean: ## remove everything that was made
 	rm -rf $(BUILD) $(BUILD)-* dist

@@ -4,7 +4,7 @@
 # Makes a minimal Debian 12 root in DIRECTORY (default: a new one below /var/tmp) that holds git and make, clones
 # the committed HEAD into it, and types there what the README tells a new user to type. Package sources
 # are those of this machine. With --packages the root holds neither: the packages of build/deb, which `make deb` made, are
-# installed into it, and their own tests (debian/tests) run there. Wants root (debootstrap and chroot do) and Debian's package debootstrap.
+# installed into it, and their own tests (debian/tests) run there; the wheel of build/wheel is tested before them. Wants root (debootstrap and chroot do) and Debian's package debootstrap.
 set -eu
 project=$(cd "$(dirname "$0")/.." && git rev-parse --show-toplevel)
 packages=
@@ -42,6 +42,13 @@ if [ -n "$packages" ]; then
   mkdir -p "$root/root/packages"
   cp "$project"/build/deb/*.deb "$root/root/packages/"
   cp -r "$project/debian/tests" "$root/root/"
+  for wheel in "$project"/build/wheel/*.whl; do
+    [ -e "$wheel" ] || continue
+    cp "$wheel" "$project/README.md" "$project/tests/wheel.sh" "$root/root/"
+    say "${wheel##*/}, without the packages"
+    inside "apt-get update -q >/dev/null && apt-get install -y -q python3-venv python3-numpy python3-xarray python3-matplotlib >/root/apt.log 2>&1 || { tail /root/apt.log; exit 1; }
+      sh /root/wheel.sh /root/${wheel##*/} /root/README.md"
+  done
   say "apt install ./malus_*.deb"
   inside "cd /root/packages && apt-get update -q >/dev/null && apt-get install -y -q ./malus_*.deb >/root/apt.log 2>&1 || { tail /root/apt.log; exit 1; }"
   sed -n 's/^Tests: //p' "$project/debian/tests/control" | while read -r name; do

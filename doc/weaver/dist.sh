@@ -1,6 +1,7 @@
 #!/bin/sh
 # dist.sh OUT CHAPTER:ROOT,ROOT...: a source archive of the committed HEAD with the tangled C++ inside,
-# for machines without noweb: cmake -B build -DMALUS_PLAIN=ON && cmake --build build
+# for machines without noweb: cmake -B build && cmake --build build. It is what pip calls an sdist, with PKG-INFO.
+# The same commit gives the same bytes: no clock, names in order.
 set -eu
 out=$1
 shift
@@ -14,6 +15,7 @@ for entry in "$@"; do
   # shellcheck disable=SC2086
   (cd "$work/$name" && doc/weaver/tangle.py --plain generated/malus "$chapter" $roots)
 done
+PYTHONPATH=python /usr/bin/python3 -B -c 'import backend; print(backend.metadata(), end="")' >"$work/$name/PKG-INFO"
 mkdir -p "$(dirname "$out")"
-tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner -czf "$out" "$name"
+tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mode=go=rX --mtime="@$(git log -1 --format=%ct)" --use-compress-program='gzip -n' -cf "$out" "$name"
 echo "The archive: $out"
