@@ -1,9 +1,14 @@
 // malus merge, from outside (nw/app/CommandMerge.nw).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "Program.hpp"
 
@@ -25,14 +30,17 @@ nlohmann::json record(const fs::path& path) { return nlohmann::json::parse(conte
 TEST(CommandMergeInvariant, PartsMakeTheBitsOfTheWhole) {
   const Scratch scratch;
   render(scratch.path, "--out whole");
-  render(scratch.path, "--out parts --tile 0,0,256,100");
-  render(scratch.path, "--out parts --tile 0,100,90,256");
-  render(scratch.path, "--out parts --tile 90,100,256,256");
+  render(scratch.path, "--out parts --part 0,0,256,100");
+  render(scratch.path, "--out parts --part 0,100,90,256");
+  render(scratch.path, "--out parts --part 90,100,256,256");
   const Outcome outcome = malusIn(scratch.path, "merge parts");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* name : {"chunky-bar-copper.img", "chunky-bar-copper.truth.img"}) {
-    ASSERT_FALSE(contents(scratch.path / "whole" / name).empty());
-    EXPECT_EQ(contents(scratch.path / "whole" / name), contents(scratch.path / "parts" / name));
+  for (const char* ending :
+       {".img", ".truth.img", ".img.hdr", ".exr", ".S0.png", ".AoLP.png"}) {
+    const std::string name = std::string("chunky-bar-copper") + ending;
+    ASSERT_FALSE(contents(scratch.path / "whole" / name).empty()) << name;
+    EXPECT_EQ(contents(scratch.path / "whole" / name), contents(scratch.path / "parts" / name))
+        << name;
   }
   const auto whole = record(scratch / "whole/chunky-bar-copper.run.json");
   const auto merged = record(scratch / "parts/chunky-bar-copper.run.json");
@@ -46,12 +54,12 @@ TEST(CommandMergeInvariant, PartsMakeTheBitsOfTheWhole) {
 // Every way to spoil a directory of parts, and a word of the sentence it must lead to.
 TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   const Scratch scratch;
-  render(scratch.path, "--out good --tile 0,0,256,4");
-  render(scratch.path, "--out good --tile 0,4,9,256");
-  render(scratch.path, "--out good --tile 9,4,256,256");
-  render(scratch.path, "--out twice --tile 0,0,256,128");
-  render(scratch.path, "--out twice --tile 0,64,256,192");
-  render(scratch.path, "--out other --seed 77 --tile 0,4,9,256");
+  render(scratch.path, "--out good --formats envi --part 0,0,256,4");
+  render(scratch.path, "--out good --formats envi --part 0,4,9,256");
+  render(scratch.path, "--out good --formats envi --part 9,4,256,256");
+  render(scratch.path, "--out twice --formats envi --part 0,0,256,128");
+  render(scratch.path, "--out twice --formats envi --part 0,64,256,192");
+  render(scratch.path, "--out other --formats envi --seed 77 --part 0,4,9,256");
   const std::string first = "chunky-bar-copper.0-0-256-4",
                     second = "chunky-bar-copper.0-4-9-256",
                     third = "chunky-bar-copper.9-4-256-256";
@@ -90,7 +98,7 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
     without("chunky-bar-copper.")(in);
     fs::copy(scratch / "twice", in, fs::copy_options::recursive);
   });
-  says("holds no tiles", without("chunky-bar-copper."));
+  says("holds no finished tiles", without("chunky-bar-copper."));
   says("seed = 77", [&](const fs::path& in) {
     fs::copy(scratch / "other", in,
              fs::copy_options::overwrite_existing | fs::copy_options::recursive);
@@ -131,4 +139,211 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   EXPECT_EQ(malusIn(scratch.path, "merge good").code, 2);
   EXPECT_EQ(contents(scratch / "good/chunky-bar-copper.img"), before);
   EXPECT_EQ(malusIn(scratch.path, "merge nowhere").code, 2);
+}
+
+// ---------------------------------------------------------------- equal parts of a film
+
+namespace {
+/// A flight of three frames of 40 x 33 pixels behind a mosaic of polarisers with noise, which looks straight down: 9
+/// tiles a frame, five of them smaller than the others.
+struct Flight {
+  Scratch scratch;
+  Flight() {
+    const fs::path scenes = fs::path(scene).parent_path();
+    std::ifstream file(scenes / "flight-nadir.json");
+    auto flight = nlohmann::json::parse(file, nullptr, true, true);
+    flight["geometry"][0]["obj"] = (scenes / "chunky-bar.obj").string();
+    flight["sensor"] = {{"kind", "framing"},
+                        {"width", 40},
+                        {"height", 33},
+                        {"field_of_view_deg", 36.87},
+                        {"polarimeter",
+                         {{"mosaic", nlohmann::json::parse(R"([
+                            [{"polarizer_deg": 90}, {"polarizer_deg": 45}],
+                            [{"polarizer_deg": 135}, {"polarizer_deg": 0}]])")},
+                          {"recover", {"S0", "S1", "S2"}},
+                          {"noise", {{"electrons_per_unit", 1e4}}}}}};
+    flight["platform"]["frames"] = 3, flight["platform"]["interval_s"] = 4;
+    flight["radiometry"]["rays"] = {9, 1};
+    put(scratch / "s.json", flight.dump(1));
+  }
+  void render(const std::string& flags) const {
+    const Outcome outcome = malusIn(scratch.path, "render s.json " + flags);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  Outcome merge(const std::string& directory) const {
+    return malusIn(scratch.path, "merge " + directory);
+  }
+};
+
+/// A record without what tells a merge from a single run.
+nlohmann::json bare(const fs::path& path) {
+  nlohmann::json made = record(path);
+  for (const char* key : {"command", "seconds", "merged_from"}) made.erase(key);
+  return made;
+}
+
+/// Names of files in `whole` that are not the same bytes in `parts`.
+std::vector<std::string> different(const fs::path& whole, const fs::path& parts) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(whole)) {
+    const std::string name = entry.path().filename().string();
+    const bool same = name.ends_with(".run.json")
+                          ? fs::exists(parts / name) && bare(entry) == bare(parts / name)
+                          : contents(entry) == contents(parts / name);
+    if (!same) names.push_back(name);
+  }
+  return names;
+}
+}  // namespace
+
+TEST(CommandMergeInvariant, EqualPartsMakeTheBitsOfAllFilesOfAFilm) {
+  const Flight flight;
+  flight.render("--out whole");
+  for (int k = 1; k <= 5; ++k) flight.render(fmt::format("--out parts --part {}/5", k));
+  // three frames of ENVI and EXR, of cubes behind filters and without, of pictures of each
+  ASSERT_GT(filesBelow(flight.scratch / "whole"), 60u);
+  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "parts").size(),
+            filesBelow(flight.scratch / "whole"));  // no final file before the merge
+  const Outcome merged = flight.merge("parts");
+  ASSERT_EQ(merged.code, 0) << merged.err;
+  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "parts"),
+            std::vector<std::string>{});
+  flight.render("--out other --seed 7");  // the negative control
+  EXPECT_GT(different(flight.scratch / "whole", flight.scratch / "other").size(), 30u);
+}
+
+TEST(CommandMergeInvariant, AsManyPartsAsTilesAndChosenFormatsMakeTheSameBits) {
+  const Flight flight;
+  flight.render("--out whole --frames 1 --formats exr --interleave bsq");
+  for (int k = 1; k <= 9; ++k)
+    flight.render(
+        fmt::format("--out parts --frames 1 --formats exr --interleave bsq --part {}/9", k));
+  const Outcome merged = flight.merge("parts");
+  ASSERT_EQ(merged.code, 0) << merged.err;
+  EXPECT_TRUE(fs::exists(flight.scratch / "parts/s.0001.exr"));
+  EXPECT_FALSE(fs::exists(flight.scratch / "parts/s.0001.S0.png"));
+  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "parts"),
+            std::vector<std::string>{});
+}
+
+TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
+  const Flight flight;
+  flight.render("--out whole --formats exr");
+  for (int k : {1, 2, 4, 5, 6, 7})
+    flight.render(fmt::format("--out p --formats exr --part {}/7", k));
+  // a node's files are lost, and another one has lost a single cube
+  fs::remove(flight.scratch / "p/s.0002.part-6-of-7.truth.img");
+  const std::size_t before = filesBelow(flight.scratch / "p");
+  const Outcome refused = flight.merge("p");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(filesBelow(flight.scratch / "p"), before);
+  EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
+  // 27 tiles in 7 parts: the first six have four. By hand: part 3 has places 8 to 11 of the row, part 6 places 20 to
+  // 23; so one tile of frame 0, three of frame 1 and four of frame 2
+  for (const char* word : {"lacks 8 of 27 tiles", "1 of frame 0", "3 of frame 1",
+                           "4 of frame 2", "part 3,6 of 7 is not there"})
+    EXPECT_NE(refused.err.find(word), std::string::npos) << word << " in " << refused.err;
+  const std::string command = refused.err.substr(refused.err.find("; run ") + 6);
+  EXPECT_EQ(command,
+            "for k in 3 6; do malus render s.json --out p --part $k/7 --formats exr --resume; "
+            "done\n");
+  const Outcome remedy =
+      runIn(flight.scratch.path, "{ malus() { '" MALUS_PROGRAM "' \"$@\"; }; " +
+                                     command.substr(0, command.size() - 1) + "; }");
+  ASSERT_EQ(remedy.code, 0) << remedy.err;
+  ASSERT_EQ(flight.merge("p").code, 0);
+  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "p"),
+            std::vector<std::string>{});
+}
+
+TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
+  const Flight flight;
+  for (int k = 1; k <= 3; ++k)
+    flight.render(fmt::format("--out good --formats envi --part {}/3", k));
+  // each part has a frame of its own, so that only the film as a whole can tell
+  flight.render("--out seed --formats envi --seed 7 --part 2/3");
+  flight.render("--out exr --formats exr --part 2/3");
+  flight.render("--out four --formats envi --part 2/4");
+  flight.render("--out rectangle --formats envi --frames 1 --part 0,0,40,30");
+  flight.render("--out rectangle --formats envi --frames 1 --part 0,30,40,33");
+  const auto complaint = [&](const std::function<void(const fs::path&)>& spoil) {
+    const fs::path spoilt = flight.scratch / "spoilt";
+    fs::remove_all(spoilt);
+    fs::copy(flight.scratch / "good", spoilt);
+    spoil(spoilt);
+    const std::size_t before = filesBelow(spoilt);
+    const Outcome outcome = flight.merge("spoilt");
+    if (outcome.code == 0) return std::string("none");
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(filesBelow(spoilt), before) << outcome.err;
+    return outcome.err;
+  };
+  const auto with = [&](const std::string& other) {
+    return [from = flight.scratch / other](const fs::path& in) {
+      fs::copy(from, in, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
+    };
+  };
+  const auto rewritten = [](const std::string& name, const std::string& key,
+                            const auto& value) {
+    return [=](const fs::path& in) {
+      auto changed = record(in / name);
+      changed[key] = value;
+      put(in / name, changed.dump());
+    };
+  };
+  const std::string second = "s.0001.part-2-of-3.run.json";
+  const auto says = [&](const std::string& word,
+                        const std::function<void(const fs::path&)>& spoil) {
+    const std::string sentence = complaint(spoil);
+    EXPECT_NE(sentence.find(word), std::string::npos) << word << " in: " << sentence;
+  };
+  EXPECT_EQ(complaint([](const fs::path&) {}), "none");  // the negative control
+  says("seed = 7", with("seed"));
+  says("formats = ", with("exr"));
+  says("dealt = ", with("four"));
+  says("s.0001: is there in rectangles and in equal parts", with("rectangle"));
+  says("scene_crc32 = ", rewritten(second, "scene_crc32", "00000000"));
+  says("program = \"malus 0.0.1\"", rewritten(second, "program", "malus 0.0.1"));
+  says("does not tell how its tiles were dealt", rewritten(second, "part", 3));
+  says("is no frame of part 2 of 3", rewritten(second, "frame", 2));
+  says("record that is not ours", rewritten(second, "frame", "x"));
+  // a cube is looked at when its frame is put together: the frames before it are whole, of this one there is nothing
+  fs::remove_all(flight.scratch / "spoilt");
+  fs::copy(flight.scratch / "good", flight.scratch / "spoilt");
+  put(flight.scratch / "spoilt/s.0001.part-2-of-3.truth.img",
+      std::string(contents(flight.scratch / "good/s.0001.part-2-of-3.truth.img").size(), 'x'));
+  const Outcome damaged = flight.merge("spoilt");
+  EXPECT_EQ(
+      damaged.err,
+      "spoilt/s.0001.part-2-of-3.truth.img: is not what its record says; render this part "
+      "again\n");
+  EXPECT_TRUE(fs::exists(flight.scratch / "spoilt/s.0000.run.json"));
+  for (const char* name : {"s.0001.run.json", "s.0001.img", "s.0001.img.part", "s.0002.img"})
+    EXPECT_FALSE(fs::exists(flight.scratch / "spoilt" / name)) << name;
+}
+
+TEST(CommandMergeIdentity, NumbersOfPartsThatCannotBeAreRefused) {
+  const Flight flight;
+  for (const auto& [part, word] :
+       {std::pair{"4/3", "is none of 3 parts"},
+        {"0/3", "is none of 3 parts"},
+        {"0/0", "is none of 0 parts"},
+        {"1/28", "makes more parts than 3 frames have tiles, 27"},
+        {"1/18446744073709551615", "makes more parts than 3 frames have tiles, 27"},
+        {"1/18446744073709551616", "is larger than any number here may be"},
+        {"1/2/3", "must have 2 numbers"},
+        {"/3", "is not made of whole numbers"},
+        {"-1/3", "is not made of whole numbers"}}) {
+    const Outcome outcome =
+        malusIn(flight.scratch.path, std::string("render s.json --out o --part ") + part);
+    EXPECT_EQ(outcome.code, 2) << part;
+    EXPECT_EQ(outcome.err, "command line: --part = " + std::string(part) + ": " + word +
+                               "; give K/N with K from 1 to N, and N from 1 to 27\n");
+  }
+  EXPECT_FALSE(fs::exists(flight.scratch / "o"));
+  const Outcome former = malusIn(flight.scratch.path, "render s.json --out o --tile 0,0,4,4");
+  EXPECT_EQ(former.code, 2);
+  EXPECT_EQ(former.err, "command line: --tile: is now called --part; write --part\n");
 }

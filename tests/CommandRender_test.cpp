@@ -101,7 +101,7 @@ TEST(CommandRenderInvariant, NegativeControlAnotherSeedIsAnotherPicture) {
 TEST(CommandRenderInvariant, PartsAreTheVeryPixelsOfTheWhole) {
   const Workplace place(smallScene());
   ASSERT_EQ(place.render("--out a").code, 0);
-  ASSERT_EQ(place.render("--out a --tile 5,3,29,20").code, 0);
+  ASSERT_EQ(place.render("--out a --part 5,3,29,20").code, 0);
   const Cube whole = readCube(place.scratch / "a/s.img"),
              part = readCube(place.scratch / "a/s.5-3-29-20.img");
   ASSERT_EQ(part.header.width, 24u);
@@ -375,9 +375,9 @@ TEST(CommandRenderIdentity, AMistakeIsToldWithLineAndColumn) {
 TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
   const Workplace place(smallScene());
   for (const char* flags :
-       {"--tile 0,0,41,10", "--tile 5,5,5,9", "--tile 1,2,3", "--frames 1:2", "--frames x",
-        "--seed -1", "--threads -2", "--out /proc/nowhere", "--tile 0,0,16,16,",
-        "--tile 0,0,16,", "--tile ''", "--frames 0:", "--frames ''",
+       {"--part 0,0,41,10", "--part 5,5,5,9", "--part 1,2,3", "--frames 1:2", "--frames x",
+        "--seed -1", "--threads -2", "--out /proc/nowhere", "--part 0,0,16,16,",
+        "--part 0,0,16,", "--part ''", "--frames 0:", "--frames ''",
         "--seed 99999999999999999999", "--seed ''", "--out ''", "--threads 1000000"}) {
     const Outcome outcome = place.render(flags);
     EXPECT_EQ(outcome.code, 2) << flags << '\n' << outcome.err;
@@ -639,7 +639,7 @@ TEST(PolarimeterInvariant, ReadingsAreTheSameBitsForThreadsPartsAndResumes) {
   ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL)));
   ASSERT_EQ(place.render("--out b --resume --threads 3").code, 0);
   for (const char* part : {"0,0,37,153", "37,0,160,80", "37,80,160,153"})
-    ASSERT_EQ(place.render(std::string("--out c --tile ") + part).code, 0);
+    ASSERT_EQ(place.render(std::string("--out c --part ") + part).code, 0);
   ASSERT_EQ(malusIn(place.scratch.path, "merge c").code, 0);
   for (const char* name : {"s.img", "s.readings.img", "s.recovered.img"}) {
     const std::string whole = place.file(std::string("a/") + name);
@@ -936,7 +936,7 @@ TEST(CommandRenderIdentity, ACameraThatLooksStraightDownMakesAMapForGdal) {
                                     {json{0, -1, 0}, "south"}}) {
     scene["platform"] = {{"position_m", {3, -2, 15}}, {"look", {0, 0, -1}}, {"up", up}};
     const Workplace place(scene);
-    for (const char* part : {"", "--tile 5,3,20,11"}) {
+    for (const char* part : {"", "--part 5,3,20,11"}) {
       const std::string stem = *part ? "s.5-3-20-11" : "s";
       ASSERT_EQ(place.render(std::string("--out a ") + part).code, 0);
       const json record = json::parse(place.file("a/" + stem + ".run.json"));
@@ -1020,6 +1020,65 @@ TEST(CommandRenderIdentity, ARadianceThatNoFloatHoldsIsRefused) {
   EXPECT_TRUE(has(outcome.err, "sky.radiance_W_m2_sr_nm = 1e+39")) << outcome.err;
   EXPECT_TRUE(has(outcome.err, "0 to 1e+12")) << outcome.err;
   EXPECT_EQ(filesBelow(place.scratch / "a"), 0u);
+}
+
+/// The objects of a render's error stream; a line that is none fails the test.
+std::vector<json> objects(const std::string& text) {
+  std::vector<json> made;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    made.push_back(json::parse(line, nullptr, false));
+    EXPECT_TRUE(made.back().is_object()) << line;
+  }
+  return made;
+}
+
+TEST(CommandRenderIdentity, ProgressAsJSONCountsTheTilesAndEndsWithTheRun) {
+  json scene = smallScene();
+  scene["platform"] = {
+      {"path", "straight"}, {"start_m", {0, 0, 15}}, {"velocity_m_s", {1, 0, 0}},
+      {"frames", 2},        {"interval_s", 1},       {"look", {0, 0, -1}},
+      {"up", {0, 1, 0}}};
+  const Workplace place(scene);
+  const Outcome outcome = place.render("--out a --progress json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<json> told = objects(outcome.err);
+  std::size_t frame = 0, tile = 0;
+  for (std::size_t i = 0; i + 1 < told.size(); ++i) {
+    if (told[i].contains("note")) continue;
+    EXPECT_EQ(told[i]["tiles"], 9);  // 40 x 33 pixels
+    EXPECT_GE(told[i]["seconds"], 0.0);
+    if (told[i]["frame"] != frame) frame = told[i]["frame"], tile = 0;
+    EXPECT_GE(told[i]["tile"], tile);
+    tile = told[i]["tile"];
+    EXPECT_EQ(told[i]["state"] == "done",
+              tile == 9 && (i + 2 == told.size() || told[i + 1]["frame"] != frame));
+  }
+  EXPECT_EQ(frame, 1u);
+  EXPECT_EQ(told.back()["state"], "done");
+  EXPECT_EQ(told.back()["frames"], 2);
+  // a scheduler must be able to tell words from objects: the default are words
+  EXPECT_TRUE(json::parse(place.render("--out b").err, nullptr, false).is_discarded());
+  const Outcome unknown = place.render("--out c --progress xml");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(
+      unknown.err,
+      "command line: --progress = xml: is no way to show the progress; give text or json\n");
+}
+
+TEST(CommandRenderIdentity, ProgressAsJSONTellsHowToGoOnAfterAStop) {
+  const Workplace place(smallScene(160, 60));
+  const Outcome stopped =
+      runIn(place.scratch.path,
+            "{ '" MALUS_PROGRAM
+            "' render s.json --threads 1 --out b --progress json & p=$!; "
+            "while ! grep -q '^16 ' b/s.truth.img.tiles; do sleep 0.01; done 2>/dev/null; "
+            "kill -TERM $p; wait $p; }");
+  ASSERT_EQ(stopped.code, 128 + SIGTERM) << stopped.err;
+  const json last = objects(stopped.err).back();
+  EXPECT_EQ(last["state"], "stopped");
+  EXPECT_EQ(last["resume"], "malus render s.json --out b --resume");
+  EXPECT_EQ(place.render("--out b --resume --progress json").code, 0);
 }
 
 TEST(CommandRenderIdentity, ASceneMayBeCalledAnything) {

@@ -32,7 +32,7 @@ TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
       0);
   EXPECT_EQ(run(scratch, moved + "/bin/malus reproduce --list"), 0);
   EXPECT_EQ(run(scratch, moved + "/bin/malus render " + moved +
-                             "/share/malus/scenes/flat-plate.json --tile 0,0,4,4 --out " +
+                             "/share/malus/scenes/flat-plate.json --part 0,0,4,4 --out " +
                              (scratch.path / "out").string()),
             0);
   EXPECT_TRUE(fs::exists(scratch.path / "out"));

@@ -106,7 +106,7 @@ TEST(WritersInvariant, ASecondRenderIntoOnePlaceIsRefused) {
     EXPECT_EQ(lines(second.err), 1) << second.err;
     EXPECT_NE(second.err.find("is held by another malus"), std::string::npos) << second.err;
   }
-  EXPECT_EQ(place.render("--out b --tile 0,0,8,8").code, 0);  // another part disturbs nobody
+  EXPECT_EQ(place.render("--out b --part 0,0,8,8").code, 0);  // another part disturbs nobody
   ::kill(first.child, SIGTERM), ::kill(first.child, SIGCONT);
   const int status = first.end(0);
   ASSERT_TRUE(WIFEXITED(status));
@@ -367,7 +367,7 @@ TEST(WritersInvariant, NamesThatNoRecordCanHoldAreRefusedAtTheDoor) {
     EXPECT_NE(outcome.err.find("UTF-8"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(filesBelow(place.scratch.path), 3u);
-  EXPECT_EQ(place.render("--out B\xc3\xa4ume --tile 0,0,4,4").code, 0);
+  EXPECT_EQ(place.render("--out B\xc3\xa4ume --part 0,0,4,4").code, 0);
 }
 
 TEST(WritersIdentity, UTF8IsRecognised) {

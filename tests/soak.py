@@ -231,12 +231,12 @@ def parts(place: str) -> None:
     """Parts at once, one of them killed and resumed, then merged."""
     x = dice.randrange(1, 63)
     tiles = [f"0,0,{x},56", f"{x},0,64,56"]
-    two = [start(place, "--out", "b", "--tile", tile, "--threads", "1", streams=subprocess.DEVNULL) for tile in tiles]
+    two = [start(place, "--out", "b", "--part", tile, "--threads", "1", streams=subprocess.DEVNULL) for tile in tiles]
     time.sleep(dice.random() * duration)
     two[0].kill()
     for process in two:
         process.communicate(timeout=300)
-    demand(run(place, "--out", "b", "--tile", tiles[0], "--resume")[0] == 0, "a part was not resumed")
+    demand(run(place, "--out", "b", "--part", tiles[0], "--resume")[0] == 0, "a part was not resumed")
     spoilt = dice.choice([None, "cut", "flip"])
     name = os.path.join(place, "b", f"s.0001.{tiles[1].replace(',', '-')}.truth.img")
     good = open(name, "rb").read()
