@@ -22,7 +22,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak fresh-machine clean help
+.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
 .PHONY: need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -157,6 +157,11 @@ SOAK_SECONDS ?= 600
 soak: need-program $(BUILD)/CMakeCache.txt ## kill, resume, fill the disk and race writers, and compare bits (SOAK_SECONDS=600)
 	@cmake --build $(BUILD) -j $(JOBS) --target malus
 	@tests/soak.py $(BUILD)/malus $(SOAK_SECONDS)
+
+cluster-test: need-program $(BUILD)/CMakeCache.txt ## run the recipes of examples/cluster on a Slurm of this machine alone (as root), and compare bits
+	@$(NEED) slurmctld slurmd slurm-client munge
+	@cmake --build $(BUILD) -j $(JOBS) --target malus
+	@tests/cluster.py $(BUILD)/malus .
 
 # both prove it; the packages take minutes where they are built already, the source an hour
 fresh-machine: $(if $(filter source,$(STEP)),,deb wheel) ## prove packages, wheel and source in minimal Debian roots (as root; STEP=packages or source: one)

@@ -234,10 +234,11 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
     flight.render(fmt::format("--out p --formats exr --part {}/7", k));
   // a node's files are lost, and another one has lost a single cube
   fs::remove(flight.scratch / "p/s.0002.part-6-of-7.truth.img");
-  const std::size_t before = filesBelow(flight.scratch / "p");
-  const Outcome refused = flight.merge("p");
+  fs::rename(flight.scratch / "p", flight.scratch / "q");  // and all was copied elsewhere
+  const std::size_t before = filesBelow(flight.scratch / "q");
+  const Outcome refused = flight.merge("q");
   EXPECT_EQ(refused.code, 2);
-  EXPECT_EQ(filesBelow(flight.scratch / "p"), before);
+  EXPECT_EQ(filesBelow(flight.scratch / "q"), before);
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
   // 27 tiles in 7 parts: the first six have four. By hand: part 3 has places 8 to 11 of the row, part 6 places 20 to
   // 23; so one tile of frame 0, three of frame 1 and four of frame 2
@@ -246,14 +247,14 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
     EXPECT_NE(refused.err.find(word), std::string::npos) << word << " in " << refused.err;
   const std::string command = refused.err.substr(refused.err.find("; run ") + 6);
   EXPECT_EQ(command,
-            "for k in 3 6; do malus render s.json --out p --part $k/7 --formats exr --resume; "
+            "for k in 3 6; do malus render s.json --part $k/7 --formats exr --out q --resume; "
             "done\n");
   const Outcome remedy =
       runIn(flight.scratch.path, "{ malus() { '" MALUS_PROGRAM "' \"$@\"; }; " +
                                      command.substr(0, command.size() - 1) + "; }");
   ASSERT_EQ(remedy.code, 0) << remedy.err;
-  ASSERT_EQ(flight.merge("p").code, 0);
-  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "p"),
+  ASSERT_EQ(flight.merge("q").code, 0);
+  EXPECT_EQ(different(flight.scratch / "whole", flight.scratch / "q"),
             std::vector<std::string>{});
 }
 

@@ -1,0 +1,198 @@
+#!/usr/bin/python3
+"""The recipes of examples/cluster on a real Slurm of this machine alone: cluster.py MALUS SOURCE (as root).
+
+munged, slurmctld and three slurmds run in a directory of their own under /tmp, bound to the loopback, and are ended at
+the end. A film is rendered by one process, and by array jobs: undisturbed; with one task killed; with one node's files
+lost. Each time the bytes of all files but the record are compared. The last line says whether all are equal.
+"""
+import filecmp
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PARTS, NODES, PATIENCE_S = 8, 3, 240
+SLURM = """ClusterName=malus
+SlurmctldHost={host}(127.0.0.1)
+CommunicationParameters=NoCtldInAddrAny,NoInAddrAny
+AuthInfo=socket={home}/munge.sock
+SlurmUser=root
+SlurmdUser=root
+SlurmctldPort={port}
+StateSaveLocation={home}/state
+SlurmdSpoolDir={home}/spool-%n
+SlurmctldPidFile={home}/slurmctld.pid
+SlurmdPidFile={home}/slurmd-%n.pid
+SlurmctldLogFile={home}/slurmctld.log
+SlurmdLogFile={home}/slurmd-%n.log
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+ReturnToService=2
+MailProg=/bin/true
+{nodes}
+PartitionName=all Nodes=ALL Default=YES State=UP
+"""
+
+
+def free_port() -> int:
+    """A port of the loopback that nobody listens at."""
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])
+
+
+class Cluster:
+    """A Slurm with several nodes on this machine; ends what it has started."""
+
+    def __init__(self, home: Path) -> None:
+        self.home = home
+        self.daemons: list[subprocess.Popen[bytes]] = []
+        nodes = "\n".join(f"NodeName=node{i} NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1 "
+                          f"Port={free_port()} CPUs=1 State=UNKNOWN" for i in range(1, NODES + 1))
+        conf = home / "slurm.conf"
+        conf.write_text(SLURM.format(host=socket.gethostname(), home=home, port=free_port(), nodes=nodes), encoding="utf-8")
+        self.environment = os.environ | {"SLURM_CONF": str(conf)}
+
+    def start(self, *command: str) -> None:
+        """A daemon in the foreground."""
+        with open(self.home / f"{Path(command[0]).name}.out", "ab") as log:
+            self.daemons.append(subprocess.Popen(command, env=self.environment, stdout=log, stderr=log))
+
+    def __enter__(self) -> "Cluster":
+        (self.home / "munge.key").write_bytes(os.urandom(128))
+        (self.home / "munge.key").chmod(0o400)
+        (self.home / "state").mkdir()
+        self.start("munged", "--foreground", "--force", f"--key-file={self.home}/munge.key", f"--socket={self.home}/munge.sock",
+                   f"--pid-file={self.home}/munged.pid", f"--log-file={self.home}/munged.log", f"--seed-file={self.home}/munged.seed")
+        wait_for((self.home / "munge.sock").exists, "munged does not start")
+        self.start("slurmctld", "-D")
+        for i in range(1, NODES + 1):
+            self.start("slurmd", "-D", "-N", f"node{i}")
+        wait_for(lambda: self.run("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == str(NODES), "the nodes do not come up")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for daemon in reversed(self.daemons):
+            daemon.terminate()
+        for daemon in self.daemons:
+            try:
+                daemon.wait(10)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+
+    def run(self, *command: str, **more: str) -> str:
+        """What a command of Slurm says; it may fail while the daemons come up."""
+        return subprocess.run(command, env=self.environment | more, cwd=self.home, text=True, check=False, timeout=PATIENCE_S,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
+
+    def array(self, recipe: Path, tasks: str, *arguments: str) -> str:
+        """Submits an array job; returns its number."""
+        return self.run("sbatch", "--parsable", f"--array={tasks}", str(recipe), *arguments, PARTS=str(PARTS)).strip()
+
+    def finish(self, job: str) -> None:
+        """Waits for the end of a job."""
+        wait_for(lambda: not self.run("squeue", "-h", "-j", job, "-o", "%i").strip(), f"job {job} does not end")
+
+
+def wait_for(true: object, complaint: str) -> None:
+    """Looks twenty times a second until it is true, but not for ever."""
+    end = time.monotonic() + PATIENCE_S
+    while not true():  # type: ignore[operator]
+        if time.monotonic() > end:
+            sys.exit(complaint)
+        time.sleep(0.05)
+
+
+def differing(whole: Path, merged: Path) -> list[str]:
+    """Names of the files of a single run that a merge has not made to the same bytes."""
+    names = [path.name for path in whole.iterdir() if not path.name.endswith(".run.json")]
+    return sorted(name for name in names
+                  if not (merged / name).exists() or not filecmp.cmp(whole / name, merged / name, shallow=False))
+
+
+def main() -> None:
+    malus, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    recipes, home = source / "examples/cluster", Path(tempfile.mkdtemp(prefix="malus-cluster-"))
+    os.environ["PATH"] = f"{malus.parent}:{os.environ['PATH']}"
+    scene = json.loads(re.sub(r"^\s*//.*", "", (source / "scenes/flight-nadir.json").read_text(encoding="utf-8"), flags=re.M))
+    scene["geometry"][0]["obj"] = str(source / "scenes/chunky-bar.obj")
+    scene["platform"]["frames"] = 3
+    (home / "film.json").write_text(json.dumps(scene), encoding="utf-8")
+    subprocess.run([malus, "render", "film.json", "--out", "whole"], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
+    files = len(list((home / "whole").iterdir()))
+    rows: list[tuple[str, str, int, int]] = []
+
+    def merge(out: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([malus, "merge", out], cwd=home, text=True, check=False, capture_output=True, timeout=PATIENCE_S)
+
+    def enter(what: str, out: str, remade: str) -> None:
+        done = merge(out)
+        if done.returncode != 0:
+            sys.exit(f"{what}: {done.stderr}")
+        rows.append((what, remade, files - 3, len(differing(home / "whole", home / out))))
+
+    def mend(cluster: Cluster, out: str, complaint: str) -> str:
+        """Makes the parts that a refused merge names, by the recipe; returns their list."""
+        found = re.search(rf"part ([\d,-]+) of {PARTS} is not there", complaint)
+        if not found:
+            sys.exit(f"no missing part is named: {complaint}")
+        print(complaint.strip())
+        cluster.finish(cluster.array(recipes / "array.sbatch", found[1], "film.json", out))
+        return found[1]
+
+    try:
+        with Cluster(home) as cluster:
+            undisturbed = cluster.array(recipes / "array.sbatch", f"1-{PARTS}", "film.json", "all")
+            cluster.finish(undisturbed)
+            enter(f"array of {PARTS} on {NODES} nodes", "all", "none")
+
+            job = cluster.array(recipes / "array.sbatch", f"1-{PARTS}", "film.json", "killed")
+            journal = home / f"killed/film.0001.part-4-of-{PARTS}.truth.img.tiles"
+            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3, "part 4 does not begin")
+            cluster.run("scancel", "--full", "--signal=KILL", f"{job}_4")
+            cluster.finish(job)
+            refused = merge("killed")
+            if refused.returncode != 2:
+                sys.exit("part 4 ended before it could be killed")
+            enter("one task killed", "killed", mend(cluster, "killed", refused.stderr))
+
+            shutil.copytree(home / "all", home / "lost")
+            for path in (home / "lost").iterdir():  # no file of the merge is left to help
+                if ".part-" not in path.name:
+                    path.unlink()
+            logs = [path.read_text(encoding="utf-8") for path in home.glob(f"malus-{undisturbed}-*.log")]
+            on_node = {found[1] for log in logs if (found := re.match(r"part (\d+) of \d+ on node2", log))}
+            for part in on_node:
+                for path in (home / "lost").glob(f"*.part-{part}-of-{PARTS}.*"):
+                    path.unlink()
+            refused = merge("lost")
+            if refused.returncode != 2 or not on_node:
+                sys.exit("node2 had no files to lose")
+            enter("the files of node2 lost", "lost", mend(cluster, "lost", refused.stderr))
+        # a comparison that could not fail would prove nothing
+        subprocess.run([malus, "render", "film.json", "--out", "other", "--seed", "2"], cwd=home, check=True, capture_output=True,
+                       timeout=PATIENCE_S)
+        control = len(differing(home / "whole", home / "other"))
+    finally:
+        if len(rows) == 3:
+            shutil.rmtree(home)
+        else:
+            print(f"The logs are in {home}", file=sys.stderr)
+    print(f"\n{'':28}{'parts made again':>18}{'files':>7}{'differ':>8}")
+    for what, remade, compared, differ in rows:
+        print(f"{what:28}{remade:>18}{compared:>7}{differ:>8}")
+    print(f"{'another seed (control)':28}{'':>18}{files - 3:>7}{control:>8}")
+    sys.exit(any(row[3] for row in rows) or control == 0)
+
+
+if __name__ == "__main__":
+    main()
