@@ -86,6 +86,58 @@ TEST(FurnaceInvariant, AFlatWhiteCardIsWhiteOrReported) {
   EXPECT_GT(biased, 40u) << "negative control: the thesis's grids are biased with few rays";
 }
 
+// A grid of n zeniths up to the angle m sums, on a white card under a sky of one, to sin^2 m / cos(h / 2), h = m / n: chapter Radiometry's
+// sum, ended early. 2e-6: single precision.
+TEST(FurnaceIdentity, AGridHasTheZenithsAndTheLargestOneThatAreNamed) {
+  const World world = plate(matt(1));
+  for (const double largest : {30 * degree, 60 * degree, 90 * degree})
+    for (const std::size_t zeniths : {1u, 2u, 5u, 9u})
+      for (const Sampling sampling : {Sampling::grid, Sampling::gridRotated}) {
+        const Estimate seen = estimate(
+            world,
+            {.sampling = sampling, .rays = {91}, .max_zenith_rad = largest, .zeniths = zeniths},
+            aslant, 3);
+        const double h = largest / double(zeniths);
+        EXPECT_NEAR(seen.mean[0], std::pow(std::sin(largest), 2) / std::cos(h / 2), 2e-6)
+            << largest / degree << " deg, " << zeniths << " zeniths";
+      }
+  const RadiometryOptions many{.sampling = Sampling::grid, .rays = {5}, .zeniths = 5};
+  EXPECT_THROW(estimate(world, many, aslant, 1), MathError) << "four directions";
+}
+
+// A point that deviates by a triangular density of half width d h / 2 has the mean cosine of its middle times (sin(d h / 4) / (d h / 4))^2.
+// The criterion: five standard errors of 20000 pixels, which must be small beside the effect.
+TEST(FurnaceIdentity, PointsOfAGridDeviateFromTheMiddlesAsFarAsNamed) {
+  const World world = plate(matt(1));
+  const double h = pi / 4;
+  const auto expected = [&](double deviation) {
+    const double x = deviation * h / 4;
+    return (x > 0 ? std::pow(std::sin(x) / x, 2) : 1) / std::cos(h / 2);
+  };
+  for (const Sampling sampling : {Sampling::grid, Sampling::gridRotated})
+    for (const double deviation : {0.5, 1.0}) {
+      const Estimate seen = estimate(
+          world, {.sampling = sampling, .rays = {17}, .zeniths = 2, .deviation = deviation},
+          aslant, 20000);
+      EXPECT_NEAR(seen.mean[0], expected(deviation), 5 * seen.error[0]) << deviation;
+      EXPECT_GT(seen.error[0], 1e-5) << "drawn anew at each hit";
+      EXPECT_GT(std::abs(expected(deviation) - expected(0)), 8 * seen.error[0])
+          << "negative control: a rigid grid would be noticed";
+    }
+}
+
+// Random directions within 60 degrees find sin^2 60 = 3/4 of an even sky, and the trial says so.
+TEST(FurnaceIdentity, RandomDirectionsInAConeLeaveTheRestOut) {
+  const World world = plate(matt(1));
+  const RadiometryOptions cone{
+      .sampling = Sampling::random, .rays = {65}, .max_zenith_rad = 60 * degree};
+  const Estimate seen = estimate(world, cone, aslant, 2000);
+  EXPECT_NEAR(seen.mean[0], 0.75, 5 * seen.error[0]);
+  EXPECT_LT(5 * seen.error[0], 0.01);
+  EXPECT_NEAR(trySampling(world, cone).found, 0.75, 1e-3) << "4000 directions: 3e-4";
+  EXPECT_FALSE(reported(world, {.sampling = Sampling::random, .rays = {65}}));
+}
+
 // Directions from the cosine lobe make a white card white for every number of rays, to single precision.
 TEST(FurnaceIdentity, ImportanceSamplingIsExactOnAWhiteCard) {
   for (const bool sobol : {true, false})

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "Program.hpp"
@@ -181,6 +182,37 @@ TEST(NoticesIdentity, ABiasedGridIsReportedOnce) {
   EXPECT_TRUE(notices(card, rotated({91, 1})).size() == 1);
   EXPECT_TRUE(notices(card, {{"sampling", "random"}, {"rays", {2}}}).empty());
   EXPECT_TRUE(notices(glass(0.001), {{"sampling", "importance"}, {"rays", {2}}}).empty());
+}
+
+TEST(NoticesIdentity, SettingsOfAGridBelongToAGrid) {
+  const auto said = [](const json& radiometry) { return complaint(plate(card, radiometry)); };
+  const json grid = {{"sampling", "grid"},
+                     {"rays", {91}},
+                     {"max_zenith_deg", 80},
+                     {"zeniths", 6},
+                     {"deviation", 0.5}};
+  EXPECT_EQ(said(grid), "");
+  const RadiometryOptions options = sceneOf(plate(card, grid)).radiometry;
+  EXPECT_DOUBLE_EQ(options.max_zenith_rad, 80 * std::numbers::pi / 180);
+  EXPECT_EQ(options.zeniths, 6u);
+  EXPECT_EQ(options.deviation, 0.5);
+  expectIn(
+      "radiometry.zeniths = 6: has no effect with this sampling; leave it out, or name a grid",
+      said({{"sampling", "random"}, {"zeniths", 6}}));
+  expectIn("radiometry.deviation = 1: has no effect",
+           said({{"sampling", "adaptive"}, {"deviation", 1}}));
+  expectIn(
+      "radiometry.max_zenith_deg = 80: has no effect with this sampling; leave it out, or name "
+      "another sampling",
+      said({{"max_zenith_deg", 80}}));
+  expectIn(
+      "radiometry.rays[1] = 4: leaves 3 directions beside the one to the sun, too few for 6 "
+      "zeniths; give more rays",
+      said({{"sampling", "grid"}, {"rays", {91, 4}}, {"zeniths", 6}}));
+  expectIn("radiometry.max_zenith_deg = 91",
+           said({{"sampling", "grid"}, {"max_zenith_deg", 91}}));
+  expectIn("radiometry.deviation = 2", said({{"sampling", "grid"}, {"deviation", 2}}));
+  ASSERT_EQ(sceneOf(plate(card, grid)).notices.size(), 1u) << "sin^2 80 deg: 3 % are lost";
 }
 
 TEST(NoticesIdentity, ALobeThatCannotBeSeenIsRefused) {
