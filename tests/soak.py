@@ -220,6 +220,18 @@ def disk(place: str) -> str | None:
     return None
 
 
+def read_only(place: str) -> str | None:
+    """A directory that nobody can write into is refused by the dry run as by the run, in words that name the cause."""
+    os.mkdir(os.path.join(place, "b"))
+    script = f"mount -t tmpfs -o ro none b || exit 99; '{program}' render s.json --out b {dice.choice(['', '--dry-run', '--resume'])}"
+    done = subprocess.run(["unshare", "-rm", "sh", "-c", script], cwd=place, capture_output=True, text=True)
+    if "unshare" in done.stderr or done.returncode == 99:
+        return "no tmpfs"
+    demand(done.returncode == 2 and "Read-only file system; " in done.stderr, f"exit {done.returncode}: {done.stderr}")
+    finish(place)
+    return None
+
+
 def closed(place: str) -> None:
     streams = dice.choice(["2>&-", ">&-", ">&- 2>&-", "2>/dev/full", "</dev/null >/dev/full 2>&-", "<&- >&- 2>&-"])
     done = subprocess.run(f"'{program}' render s.json --out b {streams}", shell=True, cwd=place, capture_output=True)
@@ -266,7 +278,8 @@ def make_scene(place: str) -> None:
     put(os.path.join(place, "s.json"), json.dumps(scene))
 
 
-mishaps: list[Callable[[str], str | None]] = [kills, stops, races, frames_race, damage, lose, mend, full, disk, closed, parts]
+mishaps: list[Callable[[str], str | None]] = [kills, stops, races, frames_race, damage, lose, mend, full, disk, read_only, closed,
+                                              parts]
 begin = time.time()
 counts = {mishap.__name__: 0 for mishap in mishaps}
 with tempfile.TemporaryDirectory(prefix="malus-soak-") as home:
