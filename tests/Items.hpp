@@ -48,7 +48,7 @@ inline std::map<std::string, std::string> valuesOf(const malus::Item& item) {
   return values;
 }
 
-/// The project with one text of validation/printed replaced by another, and that file sealed again.
+/// The project with a text of validation/printed replaced by another, and that file sealed again.
 struct Corrupted : Scratch {
   std::filesystem::path data = path / "validation";
   Corrupted(const std::string& file, const std::string& from, const std::string& to) {
@@ -59,6 +59,9 @@ struct Corrupted : Scratch {
     std::filesystem::copy("validation/claims.csv", data / "claims.csv");
     std::filesystem::copy("validation/printed", data / "printed",
                           std::filesystem::copy_options::recursive);
+    also(file, from, to);
+  }
+  void also(const std::string& file, const std::string& from, const std::string& to) {
     std::string text = contents(data / "printed" / file);
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from << " in " << file;
