@@ -1,10 +1,12 @@
 // malus products and malus info, from outside (nw/app/CommandProducts.nw).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "Program.hpp"
@@ -123,6 +125,76 @@ TEST(CommandProductsIdentity, InfoSaysWhatIsThere) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.out.find("4 x 3 pixels, 12 channels"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("S3 650"), std::string::npos);
+}
+
+// The table shows five digits of what the JSON holds whole; a number that the two tell differently would be a lie of one.
+TEST(CommandProductsIdentity, InfoSaysTheSameAsJSON) {
+  const Scratch scratch;
+  const auto bands = SpectralGrid::make({450});
+  CubeHeader header = stokesHeader(2, 1, *bands, "W m^-2 sr^-1 nm^-1");
+  header.acquisition_time = "2001-06-10T17:06:00Z";
+  CubeWriter writer(scratch / "y.img", header);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  writer.write({0, 0, 2, 1}, std::vector<float>{5, none, none, 4, 7.1234567f, 3, none, 4});
+  writer.finish();
+  const std::string text = malusIn(scratch.path, "info y.img").out;
+  const Outcome outcome = malusIn(scratch.path, "info y.img --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto info = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(info["kind"], "cube");
+  EXPECT_NE(
+      text.find(fmt::format(
+          "{}: {} x {} pixels, {} channels, {}\n{}\nacquired {}\n",
+          info["file"].get<std::string>(), info["width"].get<int>(), info["height"].get<int>(),
+          info["channels"].size(), info["unit"].get<std::string>(),
+          info["description"].get<std::string>(), info["time"].get<std::string>())),
+      text.npos)
+      << text;
+  std::string last;
+  for (const auto& channel : info["channels"]) {
+    const auto word = [&](const char* key) {
+      return channel[key].is_null() ? "-" : fmt::format("{:.5g}", channel[key].get<double>());
+    };
+    last = fmt::format("{:<16} {:>12} {:>12} {:>12} {:>8}\n",
+                       channel["name"].get<std::string>(), word("smallest"), word("mean"),
+                       word("largest"), channel["invalid"].get<int>());
+    EXPECT_NE(text.find(last), text.npos) << last << text;
+    EXPECT_EQ(channel["wavelength_nm"], 450);
+  }
+  EXPECT_EQ(info["channels"][0]["largest"], double(7.1234567f));
+  EXPECT_EQ(info["channels"][2]["mean"], nullptr);
+  EXPECT_EQ(text.find(last.replace(last.find('4'), 1, "5")), text.npos);  // negative control
+}
+
+TEST(CommandProductsIdentity, InfoOfASceneSaysTheSameAsJSON) {
+  const std::string scenes = std::string(MALUS_SOURCE_DATA) + "/../scenes/";
+  for (const std::string name : {"flat-plate.json", "four-cameras.json", "flight-nadir.json"}) {
+    const std::string text = malusIn(".", "info " + scenes + name).out;
+    const auto info = nlohmann::json::parse(malusIn(".", "info --json " + scenes + name).out);
+    const auto number = [&](const char* key) { return info[key].get<std::size_t>(); };
+    const auto says = [&](const std::string& line) {
+      EXPECT_NE(text.find(line), text.npos) << name << ": " << line << "\n" << text;
+    };
+    EXPECT_EQ(info["kind"], "scene");
+    says(fmt::format("{} x {} pixels, {} frames, {} samples", number("width"), number("height"),
+                     number("frames"), number("samples_per_pixel")));
+    says(fmt::format("{} triangles{}, {} facets, {} materials\n", number("triangles"),
+                     info["ground"] == true ? " and a ground" : "", info["facets"].size(),
+                     info["materials"].size()));
+    if (!info["polarimeter"].is_null())
+      says(fmt::format("; condition number {:.3g}\n",
+                       info["polarimeter"]["condition_number"].get<double>()));
+    EXPECT_EQ(info["polarimeter"].is_null(), text.find("filters   ") == text.npos) << name;
+    says("sky       " + info["sky"].get<std::string>() + "\n");
+    says(fmt::format("rays      {}, seed {}; ", info["sampling"].get<std::string>(),
+                     number("seed")));
+    if (info["sun"].is_null())
+      says("sun       none\n");
+    else
+      says(fmt::format("sun       zenith {:.2f} deg, azimuth {:.2f} deg, ",
+                       info["sun"]["zenith_deg"].get<double>(),
+                       info["sun"]["azimuth_deg"].get<double>()));
+  }
 }
 
 TEST(CommandProductsIdentity, BadCubesAreOneLineAndLeaveNothing) {
