@@ -1,6 +1,4 @@
 // The bench of thesis chapter 3 and the verdicts of its items (nw/thesis/Section3.nw).
-#include "malus/thesis/Section3Matrices.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -12,6 +10,7 @@
 
 #include "Items.hpp"
 #include "malus/thesis/Bench.hpp"
+#include "malus/thesis/Section3Matrices.hpp"
 
 using namespace malus;
 
