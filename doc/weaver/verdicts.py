@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from book import Page
 
 ERRATUM = re.compile(r"^\\erratum\{")
+REGISTERED = re.compile(r"registerItems\(\{.*?\}\);", re.DOTALL)
 ROW = re.compile(r'\{"([^"]+)", (\w+)\}')
 VERDICTS = ("reproduced", "erratum", "differs", "not testable")
 ROUGH = r">{\raggedright\arraybackslash}p"  # a narrow column, its right edge as it comes
@@ -129,10 +130,8 @@ class Verdicts:
     def inventory(self, page: "Page", chapters: list[noweb.Chapter], pages: list["Page"]) -> str:
         """All items of the report, in its order, and what the inventory lists besides."""
         homes = {word: chunk for chapter in chapters for chunk in chapter.chunks for word, _ in chunk.defines}
-        functions: dict[str, str] = {}
-        for chapter in chapters:
-            if chapter.path == page.source:
-                functions = {match[1]: match[2] for chunk in chapter.chunks for match in ROW.finditer(chunk.text)}
+        functions = {match[1]: match[2] for chapter in chapters for chunk in chapter.chunks
+                     for listed in REGISTERED.finditer(chunk.text) for match in ROW.finditer(listed[0])}
         labels = {other.source: label[1] for other in pages if (label := re.search(r"\\label\{(ch:[^}]*)\}", other.latex))}
         rows, problems = [], []
         for item in self.items:
