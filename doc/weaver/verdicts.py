@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from book import Page
 
 ERRATUM = re.compile(r"^\\erratum\{")
-REGISTERED = re.compile(r"registerItems\(\{.*?\}\);", re.DOTALL)
+REGISTERED = re.compile(r"registerItems\(\s*\{.*?\}\);", re.DOTALL)
 ROW = re.compile(r'\{"([^"]+)", (\w+)\}')
 VERDICTS = ("reproduced", "erratum", "differs", "not testable")
 ROUGH = r">{\raggedright\arraybackslash}p"  # a narrow column, its right edge as it comes
