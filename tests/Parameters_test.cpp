@@ -68,6 +68,15 @@ TEST(ParametersIdentity, AScenesNumbersAndSpectraAreNotReadFromTheirText) {
       "give what is kept (0 to 1)");
 }
 
+TEST(ParametersIdentity, TheEndsOfAnIntervalBelongToItButForAnOpenOne) {
+  for (const char* share : {"0", "1"})
+    EXPECT_EQ(complaint({{"share", written(share)}, {"width_deg", written("90")}}), "accepted");
+  for (const char* share : {"-1e-9", "1.000000001"})
+    EXPECT_NE(complaint({{"share", written(share)}}), "accepted") << share;
+  EXPECT_EQ(complaint({{"share", written("1")}, {"depth", written("10")}}), "accepted");
+  EXPECT_NE(complaint({{"share", written("1")}, {"depth", written("10.1")}}), "accepted");
+}
+
 TEST(ParametersIdentity, EachRefusalSaysWhereWhatAndWhatWouldBeRight) {
   const Argument half = written("0.5");
   EXPECT_EQ(complaint({{"share", half}}), "accepted");  // control
