@@ -24,7 +24,8 @@ double sin2(double degrees) { return std::pow(std::sin(degrees * pi / 180), 2); 
 
 TEST(ThinFilmsIdentity, NoFilmIsFresnel) {
   for (const double degrees : {0.0, 20.0, 45.0, 56.3, 70.0, 89.0, 90.0})
-    for (const auto& [n, k] : {std::pair{1.5, 0.0}, {0.405, 2.95}, {0.5, 0.0}, {1.33, 0.01}}) {
+    for (const auto& index : {std::pair{1.5, 0.0}, {0.405, 2.95}, {0.5, 0.0}, {1.33, 0.01}}) {
+      const double n = index.first, k = index.second;
       const double s2 = sin2(degrees), c = std::cos(degrees * pi / 180);
       const FilmTerms bare = filmStack(1, {}, n, k, 550, s2);
       EXPECT_LT(apart(bare.reflection, fresnelReflection(c, s2, n * n - k * k, 2 * n * k)),
