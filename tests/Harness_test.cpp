@@ -110,12 +110,14 @@ TEST(HarnessIdentity, HalfAUnitOfTheLastPrintedDigitDecides) {
 
 TEST(HarnessIdentity, PrintedAndWithin) {
   Item item = freshItem();
-  item.printed("a", "102.2", 102.249);
+  item.printed("a", "102.2", 102.249, "the scene is lost");
   EXPECT_EQ(last(item), Verdict::reproduced);
+  EXPECT_EQ(item.claims().back().cause, "");
   EXPECT_EQ(item.claims().back().ours, "102.24900");
   EXPECT_NEAR(item.claims().back().residual, 0.049, 1e-12);  // rounding
-  item.printed("b", "102.2", 102.251);
+  item.printed("b", "102.2", 102.251, "the scene is lost");
   EXPECT_EQ(last(item), Verdict::differs);
+  EXPECT_EQ(item.claims().back().cause, "the scene is lost");
   item.within("c", 1, 1 + 1e-13, 1e-12);
   EXPECT_EQ(last(item), Verdict::reproduced);
   item.within("d", 1, 1 + 1e-11, 1e-12);

@@ -47,6 +47,24 @@ TEST(ReproduceRegression, EveryVerdictIsTheCommittedOne) {
   EXPECT_NE(objection(run), "");
 }
 
+// A sentence of the thesis that does not hold for us says in a line what the lost scene could change, or what else is the cause.
+TEST(ReproduceRegression, EveryDifferenceFromTheThesisSaysItsCause) {
+  const auto silent = [](const nlohmann::json& claim) {
+    return claim.at("verdict") == "differs" && claim.at("kind") != "own" &&
+           claim.at("cause") == "";
+  };
+  const nlohmann::json run = nlohmann::json::parse(contents(report / "report.json"));
+  std::size_t differing = 0;
+  for (const nlohmann::json& item : run.at("items"))
+    for (const nlohmann::json& claim : item.at("claims")) {
+      EXPECT_FALSE(silent(claim)) << item.at("id") << '/' << claim.at("name");
+      differing += claim.at("verdict") == "differs";
+    }
+  EXPECT_GT(differing, 20u);  // there is something to look at
+  EXPECT_TRUE(
+      silent({{"verdict", "differs"}, {"kind", "thesis"}, {"cause", ""}}));  // negative control
+}
+
 // A report that is older than the program or a file of validation/ would say nothing of them.
 TEST(ReproduceRegression, TheReportIsThatOfThisProgramAndItsData) {
   const auto written = std::filesystem::last_write_time(report / "summary.txt");
