@@ -55,6 +55,7 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 	@$(BUILD)/malus_image_bench
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
+	@! [ -d $(BUILD)/python/malus ] || PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/bench/python.py
 
 bench-build: need-test ## build afresh into build-bench, print the seconds of each part
 	@tests/bench/build.py build-bench $(JOBS)

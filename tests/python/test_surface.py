@@ -116,6 +116,20 @@ def test_a_scalar_is_a_float() -> None:
     assert malus.brdf("lambertian", 30, 40, 180, reflectance=0.2).shape == (4, 4)
 
 
+@pytest.mark.parametrize("count", [0, 1, 7, 8, 9, 63, 64, 65, 1_000_003])
+def test_blocks_that_are_not_full_give_the_same(count: int, rng: np.random.Generator) -> None:
+    """Registers, blocks and shares of threads end raggedly; every geometry has the bits that it has alone."""
+    angles = geometries(rng, count)
+    whole = malus.brdf("torrance-sparrow", *angles, **COPPER)
+    assert whole.shape == (count, 4, 4)
+    for i in {0, 1, 6, 62, 64, *rng.integers(0, max(count, 1), 50), count - 2, count - 1}:
+        if 0 <= i < count:
+            alone = malus.brdf("torrance-sparrow", *(float(angle[i]) for angle in angles), **COPPER)
+            assert np.array_equal(whole[i], alone), i
+    behind = malus.brdf("torrance-sparrow", *(angle[3:] for angle in angles), **COPPER)  # all at other places of their blocks
+    assert np.array_equal(whole[3:], behind)
+
+
 def test_many_elements_in_threads_are_the_few_in_one(rng: np.random.Generator) -> None:
     theta_i, theta_r, phi = geometries(rng, 20_000)
     whole = malus.brdf("torrance-sparrow", theta_i, theta_r, phi, **COPPER)
