@@ -217,10 +217,11 @@ def naps_during(work: Any) -> int:
 
 
 def test_other_threads_go_on_during_a_call(rng: np.random.Generator) -> None:
-    """Beside a call that holds Python's lock another thread wakes once or twice, before and after; the sum is such a call."""
+    """Beside a call that holds Python's lock another thread wakes a few times, before and after; the sum is such a call. On a busy
+    machine there are some more of these, and so both are counted: beside a call without the lock the thread wakes each millisecond."""
     theta_i, theta_r, phi = geometries(rng, 3_000_000)
-    assert naps_during(lambda: malus.brdf("torrance-sparrow", theta_i, theta_r, phi, **COPPER)) > 5
-    assert naps_during(lambda: sum(range(20_000_000))) <= 5
+    held = naps_during(lambda: sum(range(20_000_000)))
+    assert naps_during(lambda: malus.brdf("torrance-sparrow", theta_i, theta_r, phi, **COPPER)) > 5 * max(held, 1)
 
 
 def test_models_describe_themselves() -> None:
