@@ -16,6 +16,8 @@ PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeig
 BOOK    := latexml universal-ctags python3-lxml python3-pybtex fonts-texgyre fonts-texgyre-math
 # other people's readers of our cubes, judges of HTML and manual pages, and shells, for the tests alone
 TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 tidy groff-base zsh fish
+# what several processes talk by: in the packages and in make cluster-test; everything else can do without
+MPI     := libopenmpi-dev
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
 
@@ -23,7 +25,7 @@ BROWSER := chromium
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
-.PHONY: need-program need-book need-test need-browser need-press need-paper
+.PHONY: need-mpi need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
@@ -73,10 +75,10 @@ install: need-program $(BUILD)/CMakeCache.txt ## install programs, libraries, he
 
 empty :=
 comma := ,
-deb: need-book ## Debian packages of programs, library, Python module and book, in build/deb
+deb: need-book need-mpi ## Debian packages of programs, library, Python module and book, in build/deb
 	@$(NEED) debhelper dh-python dpkg-dev
 	@rm -rf $(BUILD)/deb && mkdir -p $(BUILD)/deb/malus && cp -r debian $(BUILD)/deb/malus/
-	@sed 's/@BUILD@/$(subst $(empty) ,$(comma) ,$(strip $(PROGRAM) $(BOOK)))/' debian/control.in >$(BUILD)/deb/malus/debian/control
+	@sed 's/@BUILD@/$(subst $(empty) ,$(comma) ,$(strip $(PROGRAM) $(MPI) $(BOOK)))/' debian/control.in >$(BUILD)/deb/malus/debian/control
 	@cd $(BUILD)/deb/malus && TOP=$(CURDIR) JOBS=$(JOBS) dpkg-buildpackage -b -d -us -uc >../build.log 2>&1 || { tail -n 30 ../build.log; exit 1; }
 	@ls $(BUILD)/deb/*.deb
 
@@ -85,7 +87,7 @@ wheel: need-program $(BUILD)/CMakeCache.txt ## the Python module as a wheel, wit
 	@$(MAKE) install NEED=true PREFIX=/usr DESTDIR=$(CURDIR)/$(BUILD)/wheel/root >/dev/null
 	@python/backend.py $(BUILD)/wheel/root $(BUILD)/wheel
 
-deb-twice: need-book ## build HEAD in two places: packages, wheel and source archive are the same bytes
+deb-twice: need-book need-mpi ## build HEAD in two places: packages, wheel and source archive are the same bytes
 	@$(NEED) debhelper dh-python dpkg-dev
 	@tests/twice.sh $(CURDIR) "BASELINE=$(BASELINE)"
 
@@ -159,8 +161,8 @@ soak: need-program $(BUILD)/CMakeCache.txt ## kill, resume, fill the disk and ra
 	@cmake --build $(BUILD) -j $(JOBS) --target malus
 	@tests/soak.py $(BUILD)/malus $(SOAK_SECONDS)
 
-cluster-test: need-program $(BUILD)/CMakeCache.txt ## run the recipes of examples/cluster on a Slurm of this machine alone (as root), and compare bits
-	@$(NEED) slurmctld slurmd slurm-client munge
+cluster-test: need-program need-mpi $(BUILD)/CMakeCache.txt ## run the recipes of examples/cluster on a Slurm of this machine alone, and mpirun (as root), and compare bits
+	@$(NEED) slurmctld slurmd slurm-client munge openmpi-bin
 	@cmake --build $(BUILD) -j $(JOBS) --target malus
 	@tests/cluster.py $(BUILD)/malus .
 
@@ -184,6 +186,11 @@ $(BUILD)/CMakeCache.txt:
 
 need-program:
 	@$(NEED) $(PROGRAM)
+
+# (a build that was configured without it looks again)
+need-mpi:
+	@$(NEED) $(MPI)
+	@test ! -e $(BUILD)/CMakeCache.txt || cmake $(BUILD) >/dev/null 2>&1
 
 need-book:
 	@$(NEED) $(PROGRAM) $(BOOK)

@@ -1,23 +1,27 @@
 #!/usr/bin/python3
-"""The recipes of examples/cluster on a real Slurm of this machine alone: cluster.py MALUS SOURCE (as root).
+"""The recipes of examples/cluster on a real Slurm of this machine alone, and Open MPI: cluster.py MALUS SOURCE (as root).
 
 munged, slurmctld and three slurmds run in a directory of their own under /tmp, bound to the loopback, and are ended at
-the end. A film is rendered by one process, and by array jobs: undisturbed; with one task killed; with one node's files
-lost. Each time the bytes of all files but the record are compared. The last line says whether all are equal.
+the end. A film is rendered by one process; by array jobs, undisturbed, with one task killed, and with one node's files
+lost; by mpirun with several numbers of ranks, with one of them killed, and with ranks that have no scene; and by an MPI
+job of Slurm. Each time the bytes of all files but the record are compared. The last line says whether all are equal.
 """
 import filecmp
 import json
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any, Callable
 
 PARTS, NODES, PATIENCE_S = 8, 3, 240
+MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe"]
 SLURM = """ClusterName=malus
 SlurmctldHost={host}(127.0.0.1)
 CommunicationParameters=NoCtldInAddrAny,NoInAddrAny
@@ -119,6 +123,91 @@ def differing(whole: Path, merged: Path) -> list[str]:
                   if not (merged / name).exists() or not filecmp.cmp(whole / name, merged / name, shallow=False))
 
 
+def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) -> None:
+    """mpirun without Slurm: several numbers of ranks; one killed; ranks in a directory without the scene; no plug-in."""
+
+    def run(*command: str, where: Path = home, **more: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([*MPIRUN, *command], cwd=where, env=os.environ | more, text=True, check=False, capture_output=True,
+                              timeout=PATIENCE_S)
+
+    for ranks in (1, 2, 3, 8):
+        done = run("-n", str(ranks), "malus", "render", "film.json", "--out", f"ranks-{ranks}", "--threads", "1")
+        if done.returncode != 0 or done.stdout.count("\n") != 1:
+            sys.exit(f"{ranks} ranks: {done.stderr}")
+        enter(f"mpirun, {ranks} ranks", f"ranks-{ranks}", 0)
+
+    with subprocess.Popen([*MPIRUN, "-n", "3", "malus", "render", "film.json", "--out", "died", "--threads", "1"], cwd=home,
+                          text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        journal = home / "died/film.0001.truth.img.tiles"
+        wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > tiles // 3, "the ranks do not begin")
+        children = (pid.name for pid in Path("/proc").iterdir() if pid.name.isdigit())
+        victim = next(pid for pid in children if rank_of(pid, running.pid) == 2)
+        os.kill(int(victim), signal.SIGKILL)
+        complaint = running.communicate(timeout=PATIENCE_S)[1]
+    if running.returncode == 0 or "--resume goes on from here" not in complaint:
+        sys.exit(f"a rank was killed, and how to go on was not said: {complaint}")
+    kept = journal.read_bytes().count(b"\n") - 1
+    done = run("-n", "2", "malus", "render", "film.json", "--out", "died", "--resume")
+    if done.returncode != 0 or f"frame 2 of 3: {tiles - kept} of {tiles} tiles" not in done.stderr:
+        sys.exit(f"{kept} tiles were kept: {done.stderr}")
+    print(next(line for line in complaint.splitlines() if line.endswith("goes on from here")))
+    enter("one of 3 ranks killed", "died", tiles - kept)
+
+    (home / "elsewhere").mkdir()
+    first = ["-n", "1", "--wdir", str(home), "malus", "render", "film.json", "--out", str(home / "sent")]
+    others = ["-n", "2", "--wdir", str(home / "elsewhere"), *first[4:]]
+    done = run(*first, ":", *others)
+    if done.returncode != 0:
+        sys.exit(f"ranks without a scene: {done.stderr}")
+    enter("2 of 3 ranks have no files", "sent", 0)
+
+    for what, arguments, words in (
+            ("a part", ["--part", "1/2"], "--part = 1/2: is for processes that do not talk to each other"),
+            ("no scene", ["--seed", "x"], "--seed = x: is not made of whole numbers")):
+        done = run("-n", "2", "malus", "render", "film.json", "--out", "none", *arguments)
+        if done.returncode != 2 or done.stderr.count(words) != 1 or (home / "none").exists():
+            sys.exit(f"{what}: {done.stderr}")
+
+
+def scaling(home: Path, scene: dict[str, Any]) -> None:
+    """What a tile costs and what handing it out costs, in processor time, which other work on the machine changes little."""
+    small = scene | {"geometry": scene["geometry"][1:], "sensor": scene["sensor"] | {"width": 1024, "height": 1024},
+                     "radiometry": {"sampling": "grid-rotated", "rays": [1], "seed": 1}}
+    small["platform"]["frames"] = 1
+    (home / "small.json").write_text(json.dumps(small), encoding="utf-8")
+    tiles = (1024 // 16) ** 2
+
+    def cost_s(ranks: int, scene_file: str, *more: str) -> float:
+        before = os.times()
+        subprocess.run([*MPIRUN, "-n", str(ranks), "malus", "render", scene_file, "--out", f"cost-{ranks}", "--threads", "1",
+                        "--formats", "envi", *more], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
+        after = os.times()
+        return after.children_user + after.children_system - before.children_user - before.children_system
+
+    start = {ranks: cost_s(ranks, "small.json", "--part", "0,0,16,16") for ranks in (1, 2, 3, 8)}
+    work = {ranks: cost_s(ranks, "small.json") - start[ranks] for ranks in (1, 2, 3, 8)}
+    film = (cost_s(1, "film.json", "--frames", "0") - cost_s(1, "film.json", "--frames", "0", "--part", "0,0,16,16")) / 255
+    hand = (work[8] - work[1]) / (tiles * 7 / 8)
+    print(f"\n{'ranks':>5}{'tiles of others':>17}{'processor time':>16}{'model':>9}   (cheapest tiles, {1e6 * work[1] / tiles:.0f} us)")
+    for ranks, used in work.items():
+        others = tiles * (ranks - 1) / ranks
+        print(f"{ranks:>5}{others:>17.0f}{used:>14.2f} s{work[1] + others * hand:>7.2f} s")
+    print(f"To hand out a tile costs {1e6 * hand:.0f} us of all processors together; one of the film takes {1e3 * film:.1f} ms.\n"
+          f"Rank 0 feeds at least {film / hand:.0f} threads with the film's tiles, and 10000 with tiles of {1e3 * 10000 * hand:.0f} ms.")
+
+
+def rank_of(pid: str, mpirun: int) -> int:
+    """The rank of a malus that this mpirun has started; -1 of other processes."""
+    try:
+        status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+        words = Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+    except OSError:
+        return -1
+    if not status.startswith("Name:\tmalus\n") or f"\nPPid:\t{mpirun}\n" not in status:
+        return -1
+    return next((int(word[21:]) for word in words if word.startswith(b"OMPI_COMM_WORLD_RANK=")), -1)
+
+
 def main() -> None:
     malus, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     recipes, home = source / "examples/cluster", Path(tempfile.mkdtemp(prefix="malus-cluster-"))
@@ -129,6 +218,8 @@ def main() -> None:
     (home / "film.json").write_text(json.dumps(scene), encoding="utf-8")
     subprocess.run([malus, "render", "film.json", "--out", "whole"], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
     files = len(list((home / "whole").iterdir()))
+    tiles = json.loads((home / "whole/film.0001.run.json").read_text(encoding="utf-8"))
+    tiles = -(-tiles["width"] // 16) * -(-tiles["height"] // 16)
     rows: list[tuple[str, str, int, int]] = []
 
     def merge(out: str) -> subprocess.CompletedProcess[str]:
@@ -140,6 +231,9 @@ def main() -> None:
             sys.exit(f"{what}: {done.stderr}")
         rows.append((what, remade, files - 3, len(differing(home / "whole", home / out))))
 
+    def compare(what: str, out: str, remade: int) -> None:
+        rows.append((what, f"{remade} tiles" if remade else "none", files - 3, len(differing(home / "whole", home / out))))
+
     def mend(cluster: Cluster, out: str, complaint: str) -> str:
         """Makes the parts that a refused merge names, by the recipe; returns their list."""
         found = re.search(rf"part ([\d,-]+) of {PARTS} is not there", complaint)
@@ -150,7 +244,17 @@ def main() -> None:
         return found[1]
 
     try:
+        ranks_alone(home, compare, tiles)
+        scaling(home, scene)
         with Cluster(home) as cluster:
+            # (on one of the nodes: Slurm's PMIx has one folder a machine, and these nodes are one)
+            job = cluster.run("sbatch", "--parsable", "--nodes=1", "--overcommit", f"--ntasks={NODES}", str(recipes / "mpi.sbatch"),
+                              "film.json", "job").strip()
+            cluster.finish(job)
+            log = (home / f"malus-mpi-{job}.log").read_text(encoding="utf-8")
+            if f"{NODES} ranks on" not in log or '"state":"done","frames":3' not in log:
+                sys.exit(f"the MPI job: {log}")
+            compare(f"MPI job of Slurm, {NODES} ranks", "job", 0)
             undisturbed = cluster.array(recipes / "array.sbatch", f"1-{PARTS}", "film.json", "all")
             cluster.finish(undisturbed)
             enter(f"array of {PARTS} on {NODES} nodes", "all", "none")
@@ -183,11 +287,11 @@ def main() -> None:
                        timeout=PATIENCE_S)
         control = len(differing(home / "whole", home / "other"))
     finally:
-        if len(rows) == 3:
+        if len(rows) == 10:
             shutil.rmtree(home)
         else:
             print(f"The logs are in {home}", file=sys.stderr)
-    print(f"\n{'':28}{'parts made again':>18}{'files':>7}{'differ':>8}")
+    print(f"\n{'':28}{'made again':>18}{'files':>7}{'differ':>8}")
     for what, remade, compared, differ in rows:
         print(f"{what:28}{remade:>18}{compared:>7}{differ:>8}")
     print(f"{'another seed (control)':28}{'':>18}{files - 3:>7}{control:>8}")
