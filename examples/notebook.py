@@ -9,7 +9,7 @@ import numpy as np
 import malus
 
 matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402  pylint: disable=wrong-import-position
+from matplotlib import pyplot  # noqa: E402  pylint: disable=wrong-import-position,wrong-import-order
 
 nm = np.linspace(400, 700, 100)
 n, k = np.interp(nm, [400, 550, 700], [1.18, 1.02, 0.21]), np.interp(nm, [400, 550, 700], [2.21, 2.58, 4.20])

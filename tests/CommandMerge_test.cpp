@@ -54,12 +54,12 @@ TEST(CommandMergeInvariant, PartsMakeTheBitsOfTheWhole) {
 // Every way to spoil a directory of parts, and a word of the sentence it must lead to.
 TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   const Scratch scratch;
-  render(scratch.path, "--out good --formats envi --part 0,0,256,4");
-  render(scratch.path, "--out good --formats envi --part 0,4,9,256");
-  render(scratch.path, "--out good --formats envi --part 9,4,256,256");
-  render(scratch.path, "--out twice --formats envi --part 0,0,256,128");
-  render(scratch.path, "--out twice --formats envi --part 0,64,256,192");
-  render(scratch.path, "--out other --formats envi --seed 77 --part 0,4,9,256");
+  render(scratch.path, "--out good --write cube,truth --part 0,0,256,4");
+  render(scratch.path, "--out good --write cube,truth --part 0,4,9,256");
+  render(scratch.path, "--out good --write cube,truth --part 9,4,256,256");
+  render(scratch.path, "--out twice --write cube,truth --part 0,0,256,128");
+  render(scratch.path, "--out twice --write cube,truth --part 0,64,256,192");
+  render(scratch.path, "--out other --write cube,truth --seed 77 --part 0,4,9,256");
   const std::string first = "chunky-bar-copper.0-0-256-4",
                     second = "chunky-bar-copper.0-4-9-256",
                     third = "chunky-bar-copper.9-4-256-256";
@@ -215,10 +215,10 @@ TEST(CommandMergeInvariant, EqualPartsMakeTheBitsOfAllFilesOfAFilm) {
 
 TEST(CommandMergeInvariant, AsManyPartsAsTilesAndChosenFormatsMakeTheSameBits) {
   const Flight flight;
-  flight.render("--out whole --frames 1 --formats exr --interleave bsq");
+  flight.render("--out whole --frames 1 --write cube,truth,exr --interleave bsq");
   for (int k = 1; k <= 9; ++k)
-    flight.render(
-        fmt::format("--out parts --frames 1 --formats exr --interleave bsq --part {}/9", k));
+    flight.render(fmt::format(
+        "--out parts --frames 1 --write cube,truth,exr --interleave bsq --part {}/9", k));
   const Outcome merged = flight.merge("parts");
   ASSERT_EQ(merged.code, 0) << merged.err;
   EXPECT_TRUE(fs::exists(flight.scratch / "parts/s.0001.exr"));
@@ -229,9 +229,9 @@ TEST(CommandMergeInvariant, AsManyPartsAsTilesAndChosenFormatsMakeTheSameBits) {
 
 TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
   const Flight flight;
-  flight.render("--out whole --formats exr");
+  flight.render("--out whole --write cube,truth,exr");
   for (int k : {1, 2, 4, 5, 6, 7})
-    flight.render(fmt::format("--out p --formats exr --part {}/7", k));
+    flight.render(fmt::format("--out p --write cube,truth,exr --part {}/7", k));
   // a node's files are lost, and another one has lost a single cube
   fs::remove(flight.scratch / "p/s.0002.part-6-of-7.truth.img");
   fs::rename(flight.scratch / "p", flight.scratch / "q");  // and all was copied elsewhere
@@ -247,7 +247,8 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
     EXPECT_NE(refused.err.find(word), std::string::npos) << word << " in " << refused.err;
   const std::string command = refused.err.substr(refused.err.find("; run ") + 6);
   EXPECT_EQ(command,
-            "for k in 3 6; do malus render s.json --part $k/7 --formats exr --out q --resume; "
+            "for k in 3 6; do malus render s.json --part $k/7 --write cube,truth,exr --out q "
+            "--resume; "
             "done\n");
   const Outcome remedy =
       runIn(flight.scratch.path, "{ malus() { '" MALUS_PROGRAM "' \"$@\"; }; " +
@@ -261,13 +262,13 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
 TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
   const Flight flight;
   for (int k = 1; k <= 3; ++k)
-    flight.render(fmt::format("--out good --formats envi --part {}/3", k));
+    flight.render(fmt::format("--out good --write cube,truth --part {}/3", k));
   // each part has a frame of its own, so that only the film as a whole can tell
-  flight.render("--out seed --formats envi --seed 7 --part 2/3");
-  flight.render("--out exr --formats exr --part 2/3");
-  flight.render("--out four --formats envi --part 2/4");
-  flight.render("--out rectangle --formats envi --frames 1 --part 0,0,40,30");
-  flight.render("--out rectangle --formats envi --frames 1 --part 0,30,40,33");
+  flight.render("--out seed --write cube,truth --seed 7 --part 2/3");
+  flight.render("--out exr --write cube,truth,exr --part 2/3");
+  flight.render("--out four --write cube,truth --part 2/4");
+  flight.render("--out rectangle --write cube,truth --frames 1 --part 0,0,40,30");
+  flight.render("--out rectangle --write cube,truth --frames 1 --part 0,30,40,33");
   const auto complaint = [&](const std::function<void(const fs::path&)>& spoil) {
     const fs::path spoilt = flight.scratch / "spoilt";
     fs::remove_all(spoilt);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -80,6 +81,85 @@ TEST(CommandProductsIdentity, WhatDependsOnAnAbsentComponentIsAbsent) {
   const Cube again = readCube(scratch / "y.products.img");
   EXPECT_EQ(again.header.interleave, Interleave::bsq);
   EXPECT_EQ(again.data, made.data);
+}
+
+// Three cubes, of which the second is twice as bright: as a film all are drawn on its scale.
+TEST(CommandProductsIdentity, AFilmHasOneScale) {
+  const Scratch scratch;
+  const auto bands = SpectralGrid::make({450});
+  for (const auto& [name, factor] : {std::pair{"a", 1.f}, {"b", 2.f}, {"c", 1.f}}) {
+    CubeWriter writer(scratch / (name + std::string(".img")), stokesHeader(2, 1, *bands, "1"));
+    writer.write({0, 0, 2, 1},
+                 std::vector<float>{factor, 0, 0, 0, factor / 2, factor / 4, 0, 0});
+    writer.finish();
+  }
+  const auto draw = [&](const std::string& out, const std::string& flags) {
+    const Outcome outcome = malusIn(scratch.path, "products " + flags + " --out " + out);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return contents(scratch / (out + "/a.450.S0.png"));
+  };
+  const std::string own = draw("own", "a.img b.img c.img"),
+                    film = draw("film", "a.img b.img c.img --scale film"),
+                    alone = draw("alone", "a.img --scale film");
+  EXPECT_EQ(own, alone);
+  EXPECT_NE(own, film);
+  EXPECT_EQ(film, draw("given", "a.img --scale S0=2"));
+  EXPECT_EQ(contents(scratch / "own/b.450.S0.png"), contents(scratch / "film/b.450.S0.png"));
+  EXPECT_EQ(contents(scratch / "own/a.products.img"),
+            contents(scratch / "film/a.products.img"));
+  const std::size_t before = filesBelow(scratch.path);
+  for (const char* bad :
+       {"a.img none.img --scale film", "a.img --scale flim", "a.img own/b.products.img"})
+    EXPECT_EQ(malusIn(scratch.path, std::string("products --out new ") + bad).code, 2) << bad;
+  EXPECT_EQ(filesBelow(scratch.path), before);
+}
+
+// Matt ground of 0.2 and 0.6, looked at from the nadir, under two skies, as truth and as measured. The mean over the
+// picture may differ by five of its own standard errors, beside the 3e-6 of a sky's table and sum; these errors are below a
+// hundredth, so that a wrong pi or cosine is seen. The last is the control: the same ground as radiance is far from it.
+TEST(CommandProductsIdentity, MattGroundHasItsReflectance) {
+  const Scratch scratch;
+  const auto judge = [&](const std::string& sky, const std::string& file) {
+    put(scratch / "s.json",
+        R"({"malus": 1, "bands": {"wavelength_nm": [450, 650]},
+            "geometry": [{"ground": {"z_m": 0, "material": "m", "facet": "f"}}],
+            "materials": {"m": {"model": "lambertian", "reflectance": {"wavelength_nm": [450, 650], "values": [0.2, 0.6]}}},
+            "sun": {"zenith_deg": 50, "azimuth_deg": 70, "irradiance_W_m2_nm": 1.3}, "sky": )" +
+            sky +
+            R"(, "sensor": {"kind": "framing", "width": 8, "height": 8, "field_of_view_deg": 5,
+              "polarimeter": {"cameras": [{"polarizer_deg": 0}, {"polarizer_deg": 60}, {"polarizer_deg": 120}],
+                              "recover": ["S0", "S1", "S2"]}},
+            "platform": {"position_m": [0, 0, 9], "look_at_m": [0, 0, 0], "up": [0, 1, 0]},
+            "radiometry": {"sampling": "importance", "rays": [400]}})");
+    EXPECT_EQ(malusIn(scratch.path, "render s.json --out o --write cube").code, 0);
+    const Outcome outcome = malusIn(scratch.path, "products --reflectance o/" + file + ".img");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Cube made = readCube(scratch / ("o/" + file + ".reflectance.img"));
+    EXPECT_EQ(made.header.unit, "1");
+    const std::size_t each = made.header.channels.size() / 2;
+    for (const auto& [band, reflectance] : {std::pair{0, 0.2}, {1, 0.6}}) {
+      double sum = 0, squares = 0;
+      for (std::size_t i = band * each; i < made.data.size(); i += 2 * each)
+        sum += made.data[i], squares += made.data[i] * made.data[i];
+      const double mean = sum / 64,
+                   error = std::sqrt(std::max(squares / 64 - mean * mean, 0.0)) / 8;
+      EXPECT_LT(error, 0.01 * reflectance) << sky << file;
+      EXPECT_NEAR(mean, reflectance, 5 * error + 3e-6 * reflectance) << sky << file;
+    }
+  };
+  const std::string uniform = R"({"model": "uniform", "radiance_W_m2_sr_nm": 0.07})";
+  for (const char* file : {"s", "s.recovered"}) {
+    judge(uniform, file);
+    judge(R"({"model": "rayleigh", "albedo": 0.1})", file);
+  }
+  EXPECT_GT(std::abs(readCube(scratch / "o/s.img").at(0, 0, 0) - 0.2), 0.05);
+
+  std::filesystem::remove(scratch / "o/s.reflectance.img");
+  std::filesystem::remove(scratch / "o/s.run.json");
+  const Outcome bare = malusIn(scratch.path, "products --reflectance o/s.img --out new");
+  EXPECT_EQ(bare.code, 2);
+  EXPECT_NE(bare.err.find("s.run.json"), std::string::npos) << bare.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
 }
 
 TEST(CommandProductsIdentity, BandsWithoutAHarmlessNameGetTheirNumber) {

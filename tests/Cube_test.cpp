@@ -388,6 +388,65 @@ TEST(QuicklooksIdentity, ScalesMeanWhatTheChapterSays) {
   EXPECT_LT(distance(angle[2], {0, 0, 0}), 4);  // no polarisation, no angle
 }
 
+// Two frames of a film: the same light, once beside brighter light. With given ends it has the same colour, and by itself it has not.
+TEST(QuicklooksIdentity, OnGivenScalesEqualLightHasEqualColours) {
+  const Scratch scratch;
+  const auto three = SpectralGrid::make({450, 550, 650});
+  Cube dim{stokesHeader(2, 1, *three, "1"), {}}, bright = dim;
+  for (int band = 0; band < 3; ++band)
+    dim.data.insert(dim.data.end(), {1, 0.5f, 0.25f, 0.125f});
+  bright.data = dim.data;
+  for (int band = 0; band < 3; ++band) {
+    dim.data.insert(dim.data.end(), {1, 0.25f, 0, 0});
+    bright.data.insert(bright.data.end(), {4, 3, 0, 2});
+  }
+  const PictureScales own = scalesOf(dim, 1);
+  EXPECT_EQ(own, (PictureScales{{"S0", 1},
+                                {"S1", 0.5f},
+                                {"S2", 0.25f},
+                                {"S3", 0.125f},
+                                {"DoLP", std::hypot(0.5f, 0.25f)},
+                                {"DoCP", 0.125f},
+                                {"red", 1},
+                                {"green", 1},
+                                {"blue", 1}}));
+  PictureScales film = own;
+  widen(film, scalesOf(bright, 1));
+  EXPECT_EQ(film, (PictureScales{{"S0", 4},
+                                 {"S1", 3},
+                                 {"S2", 0.25f},
+                                 {"S3", 2},
+                                 {"DoLP", 0.75f},
+                                 {"DoCP", 0.5f},
+                                 {"red", 4},
+                                 {"green", 4},
+                                 {"blue", 4}}));
+  Cube night = dim;
+  std::ranges::fill(night.data, 0.f);
+  EXPECT_EQ(scalesOf(night, 1), PictureScales{});  // darkness sets no scale
+  EXPECT_EQ(scalesOfChannel(night, 0), PictureScales{});
+  quicklooks(dim, 1, scratch / "dim"), quicklooks(bright, 1, scratch / "bright");
+  quicklooks(dim, 1, scratch / "film-dim", {}, film);
+  quicklooks(bright, 1, scratch / "film-bright", {}, film);
+  for (const std::string name : {"S0", "S1", "S3", "DoLP", "AoLP", "rgb"}) {
+    const auto first = [&](const std::string& of) {
+      return firstRow(scratch / fmt::format("{}.{}.png", of, name), 1)[0];
+    };
+    EXPECT_EQ(first("film-dim"), first("film-bright")) << name;
+    EXPECT_NE(first("dim"), first("bright")) << name;
+  }
+  quicklook(dim, 0, scratch / "a.png", {{"readings", 4.f}});
+  EXPECT_EQ(firstRow(scratch / "a.png", 2), firstRow(scratch / "film-dim.S0.png", 2));
+}
+
+TEST(QuicklooksIdentity, ScalesAreReadOrRefused) {
+  const InputPlace place{"command line", 0, "--scale"};
+  EXPECT_EQ(readScales("S0=0.25,DoLP=1", place), (PictureScales{{"S0", 0.25f}, {"DoLP", 1}}));
+  for (const char* bad : {"", "S0", "S0=", "S9=1", "S0=0", "S0=-1", "S0=nan", "S0=1e39",
+                          "S0=1e-60", "S0=1,S0=2", "S0=1,", "fil"})
+    EXPECT_THROW(readScales(bad, place), InputError) << bad;
+}
+
 // A black pixel has no degree and no angle: grey, which no scale holds; and no part in the stretch.
 TEST(QuicklooksIdentity, ABlackPixelIsNeitherAFaultNorUnpolarised) {
   const Scratch scratch;

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "malus/air/RayleighSky.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/render/Radiometry.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
@@ -157,4 +158,26 @@ TEST(WorldIdentity, ASunThatIsNotPhysicalIsRefused) {
   for (const CDStokesVector& bad :
        {CDStokesVector(-1), CDStokesVector(not_a_number), CDStokesVector(2, 1.5, 1.5, 0)})
     EXPECT_TRUE(names(bright(bad), "at 550 nm is not physical"));
+}
+
+// By hand: a sun of 2 at 60 degrees brings 1, and a sky of 0.3 everywhere brings 0.3 pi. At night nothing comes from the
+// sun. The Rayleigh sky's own flux is an integral over depth, not over directions; the sky's table is good for 2e-6 (RayleighSky_test) and the rule of 32 points for 1e-6.
+TEST(WorldIdentity, WhatFallsOnTheGround) {
+  World world = smallWorld();
+  EXPECT_NEAR(horizontalIrradiance(world)[0], 1, rounding);
+  world.sky = std::make_shared<UniformSky>(
+      CDSpectralVector<CDStokesVector>(world.grid, CDStokesVector(0.3)));
+  EXPECT_NEAR(horizontalIrradiance(world)[0], 1 + 0.3 * pi, rounding);
+  world.sun->to_sun = compassDirection(2, pi);
+  EXPECT_NEAR(horizontalIrradiance(world)[0], 0.3 * pi, rounding);
+  for (const double depth : {0.05, 0.3, 2.0})
+    for (const double zenith : {0.0, 1.0, 1.5}) {
+      const Sun sun{compassDirection(zenith, 1), {world.grid, CDStokesVector(2.0)}, 0};
+      const auto sky = std::make_shared<RayleighSky>(
+          sun, RayleighSky::Air{{world.grid, depth}, {world.grid, 0.03}, {world.grid, 0.25}});
+      world.sky = sky;
+      world.sun.reset();
+      EXPECT_NEAR(horizontalIrradiance(world)[0] / sky->light(0).diffuseDown(), 1, 3e-6)
+          << depth << ' ' << zenith;
+    }
 }

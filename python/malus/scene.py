@@ -157,7 +157,8 @@ def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.
     Parameters
     ----------
     cube : path, or iterable of paths
-        ENVI cubes (``plate.img`` beside ``plate.img.hdr``) as ``malus render`` writes them. Paths in one call are frames of one picture.
+        ENVI cubes (``plate.img`` beside ``plate.img.hdr``) or netCDF (``plate.nc``) as ``malus render`` writes them.
+        Paths in one call are frames of one picture.
 
     Returns
     -------

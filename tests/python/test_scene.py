@@ -37,7 +37,7 @@ def cubes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of a scene and of what malus render makes of it."""
     folder = tmp_path_factory.mktemp("matt")
     (folder / "matt.json").write_text(json.dumps(MATT), encoding="utf-8")
-    run_malus("render", folder / "matt.json", "--out", folder / "out", "--formats", "png")
+    run_malus("render", folder / "matt.json", "--out", folder / "out", "--write", "cube,truth,pictures")
     return folder
 
 
