@@ -180,7 +180,7 @@ def scaling(home: Path, scene: dict[str, Any]) -> None:
     def cost_s(ranks: int, scene_file: str, *more: str) -> float:
         before = os.times()
         subprocess.run([*MPIRUN, "-n", str(ranks), "malus", "render", scene_file, "--out", f"cost-{ranks}", "--threads", "1",
-                        "--formats", "envi", *more], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
+                        "--write", "cube,truth", *more], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
         after = os.times()
         return after.children_user + after.children_system - before.children_user - before.children_system
 
