@@ -11,6 +11,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -20,6 +21,7 @@
 
 #include "Scratch.hpp"
 #include "malus/app/CommandRender.hpp"
+#include "malus/app/RenderFiles.hpp"
 #include "malus/app/RenderProgress.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/InputFiles.hpp"
@@ -264,7 +266,7 @@ TEST(RanksIdentity, TheOfficeHearsAllBeforeItComplains) {
   office.leaveAtTheEnd();  // hands out no more
   TileDesk first(one), second(two);
   first.say({4, 1, 2, 3});
-  first.end("out/x.img.part: cannot be written: No space left on device; make room");
+  first.end("error out/x.img.part: cannot be written: No space left on device; make room");
   second.end("");
   std::vector<WrittenTile> entered;
   office.serve([&](const WrittenTile& tile) { entered.push_back(tile); });
@@ -279,6 +281,20 @@ TEST(RanksIdentity, TheOfficeHearsAllBeforeItComplains) {
         std::string(error.what()).starts_with("rank 1: out/x.img.part: cannot be written"))
         << error.what();
   }
+}
+
+// A radiance that no float holds ends the frame as if rank 0 had met it, so that nothing of the frame stays.
+TEST(RanksIdentity, TooBrightForAnotherRankIsTooBrightForAll) {
+  stop_wanted = false;
+  Post post(2);
+  ThreadRanks zero(post, 0, {}), one(post, 1, {});
+  TileOffice office(zero, {4});
+  office.leaveAtTheEnd();
+  TileDesk(one).end("bright 1e+40");
+  office.serve([](const WrittenTile&) {});
+  EXPECT_THROW(office.demandGood(), TooBright);
+  EXPECT_THROW(floats(std::vector{1.0, 1e40}), TooBright);
+  EXPECT_EQ(floats(std::vector{3e38, std::numeric_limits<double>::infinity()}).size(), 2u);
 }
 
 TEST(RanksIdentity, TilesAreHandedOutOnce) {
