@@ -48,6 +48,21 @@ TEST(FormatRegistryIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
     EXPECT_EQ(namesIn(scratch / "o"), wanted) << chosen;
     std::filesystem::remove_all(scratch / "o");
   }
+  // several batches have errors, in a cube of their own and in other formats
+  FrameShape with_errors = shape;
+  with_errors.errors = true;
+  const std::string chosen = "error,netcdf,pictures";
+  ASSERT_EQ(malusIn(scratch.path, "render s.json --out o --batches 2 --write " + chosen).code,
+            0);
+  std::set<std::string> wanted{"s.run.json"};
+  for (const OutputFormat* format : chosenFormats(chosen, {}))
+    for (const OutputFile& file : format->files(with_errors)) {
+      wanted.insert("s" + file.ending);
+      EXPECT_LE(double(std::filesystem::file_size(scratch / ("o/s" + file.ending))), file.bytes)
+          << file.ending;
+    }
+  EXPECT_EQ(namesIn(scratch / "o"), wanted);
+  EXPECT_TRUE(wanted.contains("s.error.png") && wanted.contains("s.rays.png"));
   EXPECT_EQ(usualFormats(), "cube,exr,pictures,truth");
   EXPECT_EQ(chosenFormats("exr", {}).size(), 1u);
 }
@@ -188,7 +203,7 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(unknown.err,
             "command line: --write = pictues: is not an output of malus; did you mean "
             "pictures? known "
-            "are: cube, exr, netcdf, pictures, truth\n");
+            "are: cube, error, exr, netcdf, pictures, truth\n");
   EXPECT_EQ(malusIn(scratch.path, "render s.json --out o --formats exr").err,
             "command line: --formats: is now called --write; write --write\n");
   const Outcome twice = malusIn(scratch.path, "render s.json --out o --write exr,exr");

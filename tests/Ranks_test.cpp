@@ -193,6 +193,28 @@ TEST(RanksInvariant, AnyNumberOfRanksMakesTheSameBits) {
   EXPECT_GE(differing(scratch / "1", scratch / "other").size(), 8u);
 }
 
+// A picture of several batches has a third cube, which other ranks write into as well; a rank dies, and the others go on.
+TEST(RanksInvariant, TheErrorsOfAPictureAreTheSameBits) {
+  const Scratch scratch;
+  const std::string scene = smallScene(scratch);
+  nlohmann::json text = nlohmann::json::parse(contents(scene));
+  text["radiometry"] = {{"rays", {9, 2}}};
+  put(scene, text.dump());
+  RenderFlags flags = flagsFor(scene, scratch / "alone");
+  flags.frames = "1", flags.batches = "2";
+  ASSERT_EQ(renderBy(1, flags).codes, std::vector<int>{0});
+  EXPECT_TRUE(fs::exists(scratch / "alone/film.0001.error.img"));
+  flags.out = (scratch / "three").string();
+  const Ended ended = renderBy(3, flags);
+  EXPECT_EQ(ended.codes, std::vector<int>(3, 0)) << ended.complaint;
+  EXPECT_EQ(differing(scratch / "alone", scratch / "three"), std::vector<std::string>{});
+  flags.out = (scratch / "killed").string();
+  EXPECT_EQ(renderBy(3, flags, {{1, {.dies_after = 4}}}).codes, std::vector<int>(3, -1));
+  flags.resume = true;
+  EXPECT_EQ(renderBy(2, flags).codes, std::vector<int>(2, 0));
+  EXPECT_EQ(differing(scratch / "alone", scratch / "killed"), std::vector<std::string>{});
+}
+
 // A rank that is slow, several threads a rank, another order of numbers and a part of the picture change no bit either.
 TEST(RanksInvariant, SlowRanksAndManyThreadsMakeTheSameBits) {
   const Scratch scratch;
@@ -265,7 +287,7 @@ TEST(RanksIdentity, TheOfficeHearsAllBeforeItComplains) {
   EXPECT_EQ(office.next(), 4u);
   office.leaveAtTheEnd();  // hands out no more
   TileDesk first(one), second(two);
-  first.say({4, 1, 2, 3});
+  first.say({4, 1, 2, 5, 3});
   first.end("error out/x.img.part: cannot be written: No space left on device; make room");
   second.end("");
   std::vector<WrittenTile> entered;

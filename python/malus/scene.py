@@ -54,6 +54,10 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
         "sun_hidden": (pixels, found["sun_hidden"], {"long_name": "whether the sun's ray does not reach what is met"}),
         "rays": (pixels, found["rays"], {"units": "1", "long_name": "rays that were followed"}),
     }
+    if "stokes_standard_error" in found:
+        variables["stokes_standard_error"] = (
+            (*pixels, "band", "stokes"), found["stokes_standard_error"],
+            {"units": found["unit"], "long_name": "standard error of the Stokes radiance", "description": found["description"]})
     height, width = found["rays"].shape[1:]
     coordinates = {
         "frame": ("frame", np.array(found["frames"], dtype=np.int64), {"long_name": "number of the frame, from 0"}),
@@ -73,7 +77,7 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
 
 
 def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iterable[int] | None = None,
-           tile: Sequence[int] | None = None, seed: int | None = None, threads: int = 0,
+           tile: Sequence[int] | None = None, seed: int | None = None, batches: int = 1, threads: int = 0,
            base: str | os.PathLike[str] | None = None, progress: bool | Watcher = False) -> xr.Dataset:
     """Polarimetric pictures of a scene, in memory.
 
@@ -87,6 +91,8 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
         Only this part of the picture; x1 and y1 are beyond its end.
     seed : int, optional
         Instead of the scene's.
+    batches : int
+        Independent estimates of each pixel, of which the picture is the mean; from 2 on with its standard error.
     threads : int
         0 for all processors. The numbers do not depend on it.
     base : path, optional
@@ -99,7 +105,8 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
     -------
     xarray.Dataset
         ``radiance`` (frame, y, x, band, stokes), float32 [W m^-2 sr^-1 nm^-1], with the numbers of ``malus render``'s cube, and the
-        truth of each pixel's first ray: ``range_m``, ``facet``, ``material``, ``sun_hidden``, ``rays``.
+        truth of each pixel's first ray: ``range_m``, ``facet``, ``material``, ``sun_hidden``, ``rays``. With several batches also
+        ``stokes_standard_error``, of the shape of ``radiance``.
 
     Raises
     ------
@@ -115,7 +122,7 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
         raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
     path, text = (None, json.dumps(scene, default=_plain)) if isinstance(scene, dict) else (os.fspath(scene), "")
     try:
-        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher))
+        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher, batches))
     finally:
         if bar:
             bar.close()

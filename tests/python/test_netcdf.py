@@ -65,6 +65,24 @@ def test_xarray_reads_what_malus_renders(folder: Path) -> None:
             np.testing.assert_array_equal(malus.dolp(ds.radiance), malus.dolp(expected.radiance))
 
 
+def test_errors_are_those_of_the_cube_and_of_the_module(folder: Path) -> None:
+    run_malus("render", folder / "plate.json", "--frames", "1", "--batches", "3", "--out", folder / "errors", "--write", "cube,error,netcdf")
+    rendered = malus.render(folder / "plate.json", frames=1, batches=3)
+    assert "stokes_standard_error" not in malus.render(folder / "plate.json", frames=1)
+    error = np.fromfile(folder / "errors/plate.0001.error.img", dtype="<f4").reshape(16, 24, 20)[:, :, :8].reshape(1, 16, 24, 2, 4)
+    with xr.open_dataset(folder / "errors/plate.0001.nc") as ds:
+        assert ds.stokes_standard_error.dims == ds.radiance.dims and ds.stokes_standard_error.units == ds.radiance.units
+        for found in (ds.stokes_standard_error, rendered.stokes_standard_error):
+            assert np.array_equal(found.values, error) and (found.values[..., 0] > 0).any()
+        assert np.array_equal(ds.radiance.values, rendered.radiance.values)
+    for batches, words in ((0, "is no number of batches"), (4097, "give a number from 1 to 4096")):
+        with pytest.raises(ValueError, match=words):
+            malus.render(folder / "plate.json", batches=batches)
+    grid = {**SCENE, "radiometry": {"sampling": "grid-rotated", "rays": [8, 1]}}
+    with pytest.raises(ValueError, match="sampling is grid-rotated; set radiometry.sampling"):
+        malus.render(grid, batches=2)
+
+
 def test_negative_control_another_frame_has_other_bits(folder: Path) -> None:
     with xr.open_dataset(folder / "out/plate.0000.nc") as first, xr.open_dataset(folder / "out/plate.0001.nc") as second:
         assert not np.array_equal(first.radiance.values, second.radiance.values)
