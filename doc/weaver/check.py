@@ -23,7 +23,6 @@ OURS = re.compile(r"\bCD[A-Z]\w*")
 ROOT = re.compile(r"\w+/\w+\.(?:plugin\.cpp|[ch]pp)$")
 USE = re.compile(r"^(\s*)<<(.*)>>\s*$")
 MOST_LINES, MOST_OF_A_FUNCTION = 550, 70
-LONGER = {"surface/BRDFTorranceSparrow.cpp": 700}  # one class whose loops share what the compiler must see together
 
 
 def floors_and_names(chapter: str, problems: list[str], homes: dict[str, str], leads: dict[str, set[str]]) -> None:
@@ -117,7 +116,7 @@ def lengths(chapter: str, problems: list[str]) -> None:
     chunks = chunks_of(chapter)
     for root in filter(ROOT.match, chunks):
         text = tangled(root, chunks)
-        if len(text) > LONGER.get(root, MOST_LINES):
+        if len(text) > MOST_LINES:
             problems.append(f"{chapter}: {root} has {len(text)} lines of code; part it into chapters of one subject each")
         problems += [f"{chapter}: {length} lines in a function of {root}: {name}; part it"
                      for name, length in functions(text) if length > MOST_OF_A_FUNCTION]
