@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The recipes of examples/cluster on a real Slurm of this machine alone, and Open MPI: cluster.py MALUS SOURCE (as root).
+"""The recipes of examples/cluster on a real Slurm of this machine alone, and Open MPI: cluster.py MALUS SOURCE RECORD (as root).
 
 munged, slurmctld and three slurmds run in a directory of their own under /tmp, bound to the loopback, and are ended at
 the end. A film is rendered by one process; by array jobs, undisturbed, with one task killed, and with one node's files
@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 from typing import Any, Callable
 
-PARTS, NODES, PATIENCE_S = 8, 3, 240
+PARTS, NODES, PATIENCE_S, TIMES = 8, 3, 240, 3
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe"]
 SLURM = """ClusterName=malus
 SlurmctldHost={host}(127.0.0.1)
@@ -169,31 +169,33 @@ def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) 
             sys.exit(f"{what}: {done.stderr}")
 
 
-def scaling(home: Path, scene: dict[str, Any]) -> None:
-    """What a tile costs and what handing it out costs, in processor time, which other work on the machine changes little."""
+def scaling(home: Path, scene: dict[str, Any], record: Path) -> None:
+    """Writes what so many ranks use for cheap tiles, in processor time, which other work on the machine changes little."""
     small = scene | {"geometry": scene["geometry"][1:], "sensor": scene["sensor"] | {"width": 1024, "height": 1024},
-                     "radiometry": {"sampling": "grid-rotated", "rays": [1], "seed": 1}}
-    small["platform"]["frames"] = 1
+                     "radiometry": {"sampling": "grid-rotated", "rays": [1], "seed": 1},
+                     "platform": scene["platform"] | {"frames": 1}}
     (home / "small.json").write_text(json.dumps(small), encoding="utf-8")
     tiles = (1024 // 16) ** 2
 
-    def cost_s(ranks: int, scene_file: str, *more: str) -> float:
+    def once_s(ranks: int, scene_file: str, *more: str) -> float:
         before = os.times()
         subprocess.run([*MPIRUN, "-n", str(ranks), "malus", "render", scene_file, "--out", f"cost-{ranks}", "--threads", "1",
                         "--write", "cube,truth", *more], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
         after = os.times()
         return after.children_user + after.children_system - before.children_user - before.children_system
 
-    start = {ranks: cost_s(ranks, "small.json", "--part", "0,0,16,16") for ranks in (1, 2, 3, 8)}
-    work = {ranks: cost_s(ranks, "small.json") - start[ranks] for ranks in (1, 2, 3, 8)}
-    film = (cost_s(1, "film.json", "--frames", "0") - cost_s(1, "film.json", "--frames", "0", "--part", "0,0,16,16")) / 255
-    hand = (work[8] - work[1]) / (tiles * 7 / 8)
-    print(f"\n{'ranks':>5}{'tiles of others':>17}{'processor time':>16}{'model':>9}   (cheapest tiles, {1e6 * work[1] / tiles:.0f} us)")
-    for ranks, used in work.items():
-        others = tiles * (ranks - 1) / ranks
-        print(f"{ranks:>5}{others:>17.0f}{used:>14.2f} s{work[1] + others * hand:>7.2f} s")
-    print(f"To hand out a tile costs {1e6 * hand:.0f} us of all processors together; one of the film takes {1e3 * film:.1f} ms.\n"
-          f"Rank 0 feeds at least {film / hand:.0f} threads with the film's tiles, and 10000 with tiles of {1e3 * 10000 * hand:.0f} ms.")
+    def least_s(*arguments: Any) -> float:
+        return min(once_s(*arguments) for _ in range(TIMES))
+
+    one_tile = ("--part", "0,0,16,16")
+    film = (least_s(1, "film.json", "--frames", "0") - least_s(1, "film.json", "--frames", "0", *one_tile)) / 255
+    lines = [f"# title: What ranks use for a picture of {tiles} cheap tiles, in processor time without their start, and one tile of a film",
+             f"# source: make cluster-test, the least of {TIMES} runs each", f"# date: {time.strftime('%Y-%m-%d', time.gmtime())}",
+             "ranks,tiles,work_s,film_tile_s"]
+    for ranks in (1, 2, 3, 8):
+        work = least_s(ranks, "small.json") - least_s(ranks, "small.json", *one_tile)
+        lines.append(f"{ranks},{tiles},{work:.3f},{film:.6f}")
+    record.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def rank_of(pid: str, mpirun: int) -> int:
@@ -209,7 +211,7 @@ def rank_of(pid: str, mpirun: int) -> int:
 
 
 def main() -> None:
-    malus, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    malus, source, record = (Path(word).resolve() for word in sys.argv[1:4])
     recipes, home = source / "examples/cluster", Path(tempfile.mkdtemp(prefix="malus-cluster-"))
     os.environ["PATH"] = f"{malus.parent}:{os.environ['PATH']}"
     scene = json.loads(re.sub(r"^\s*//.*", "", (source / "scenes/flight-nadir.json").read_text(encoding="utf-8"), flags=re.M))
@@ -245,7 +247,7 @@ def main() -> None:
 
     try:
         ranks_alone(home, compare, tiles)
-        scaling(home, scene)
+        scaling(home, scene, record)
         with Cluster(home) as cluster:
             # (on one of the nodes: Slurm's PMIx has one folder a machine, and these nodes are one)
             job = cluster.run("sbatch", "--parsable", "--nodes=1", "--overcommit", f"--ntasks={NODES}", str(recipes / "mpi.sbatch"),

@@ -1,0 +1,45 @@
+// What it costs to hand tiles to other ranks (nw/thesis/XRanks.nw), on measurements made up here.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "Items.hpp"
+#include "malus/base/Error.hpp"
+
+using namespace malus;
+
+namespace {
+/// A folder like validation/ with the rows of so many measurements.
+struct RanksReport : Scratch {
+  explicit RanksReport(const std::string& rows) {
+    put(path / "ranks.csv", "# title: made up\n# date: 2002-05-01\nranks,tiles,work_s,film_tile_s\n" + rows);
+    std::filesystem::copy("validation/claims.csv", path / "claims.csv");
+  }
+};
+// 100 tiles, 1 s alone and 10 ms for each tile of another rank
+const std::string alone = "1,100,1,.5\n", two = "2,100,1.5,.5\n", four = "4,100,1.75,.5\n";
+}  // namespace
+
+TEST(XRanksInvariant, WorkThatFollowsTheModelIsReproduced) {
+  const RanksReport report(alone + two + four);
+  const Item item = ran("X.ranks", report.path);
+  EXPECT_EQ(verdictsOf(item)["model"], Verdict::reproduced);
+  auto values = valuesOf(item);
+  EXPECT_EQ(values["hand"], "10000");  // us
+  EXPECT_EQ(values["film"], "500.0");  // ms
+  EXPECT_EQ(values["threads"], "50");
+  EXPECT_EQ(values["needed"], "100000");  // ms
+  EXPECT_EQ(values["date"], "2002-05-01");
+  EXPECT_NE(values["rows"].find("2 & 50 & 1.50 & 1.50 & 0.0 \\\\ "), std::string::npos);
+}
+
+TEST(XRanksInvariant, AFifthMoreWorkDiffers) {  // negative control
+  const RanksReport report(alone + "2,100,1.8,.5\n" + four);
+  EXPECT_EQ(verdictsOf(ran("X.ranks", report.path))["model"], Verdict::differs);
+}
+
+TEST(XRanksInvariant, WithoutTheRowOfOneRankItIsRefused) {
+  EXPECT_THROW(ran("X.ranks", RanksReport(two + four).path), InputError);
+  EXPECT_THROW(ran("X.ranks", RanksReport(alone + four).path), InputError);
+}
