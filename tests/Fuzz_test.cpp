@@ -54,7 +54,7 @@ TEST(FuzzRegression, FormerFindingsAreOneLineOrASoundThing) {
 
 // Random bytes make random choices: scenes and files that are valid but for some of their parts.
 TEST(FuzzInvariant, RandomChoicesAreOneLineOrASoundThing) {
-  const unsigned long inputs = numberFrom("MALUS_FUZZ_INPUTS", 400);
+  const unsigned long inputs = numberFrom("MALUS_FUZZ_INPUTS", 100);
   std::mt19937_64 random(numberFrom("MALUS_FUZZ_SEED", 1));
   const char* only = std::getenv("MALUS_FUZZ_DOOR");
   for (unsigned long i = 0; i < inputs; ++i)
