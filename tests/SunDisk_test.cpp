@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "Worlds.hpp"
+#include "malus/render/Sensor.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFGlossyCoating.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -176,6 +177,34 @@ TEST(SunDiskPublished, PenumbraOfAStraightEdge) {
     EXPECT_GT(std::abs(control.mean - segment(0.5)), 5.5 * control.error + 1e-4)
         << "negative control";
   }
+}
+
+// A pixel as wide as the penumbra, whose ray starts anywhere in it: the mean over the pixel of what each of its points
+// sees. The place in the pixel and the point of the sun must not move together.
+TEST(SunDiskPublished, PixelsAverageThePenumbra) {
+  const double h = 10, width = h * std::tan(alpha), turned = 1e-4;
+  SensorGeometry geometry;
+  geometry.width = geometry.height = 1, geometry.jitter = true;
+  geometry.principal_x = geometry.principal_y = 0.5;
+  geometry.focal_length_px = 1 / (2 * width);  // seen from the height of 1
+  const auto bands = SpectralGrid::make({550.0});
+  const Sensor sensor(geometry, bands, bands);
+  const Pose down = Pose::looking({turned, turned, 1}, {0, 0, -1}, {0, 1, 0});
+  const std::uint64_t pixels = 20000;
+  const Platform platform = Platform::fixed(down, pixels);
+  const auto rayOf = [&](std::uint64_t n) { return sensor.ray(0, 0, 0, platform, n, 1); };
+  for (const double edge : {-0.6, -0.3, 0.0, 0.4, 0.7})
+    for (const bool across : {true, false}) {
+      const double x = edge * width;
+      const auto roof = across ? std::vector<CDVector>{{-5, -50, h}, {x, -50, h}, {x, 50, h}, {-5, 50, h}}
+                               : std::vector<CDVector>{{-50, -5, h}, {50, -5, h}, {50, x, h}, {-50, x, h}};
+      const World world = sunlit(groundUnder(above(roof, {{0, 1, 2}, {0, 2, 3}})), {0, 0, 1});
+      const Estimate e = estimateOver(world, rays(Sampling::importance, {1}), rayOf, pixels);
+      double expected = 0;
+      for (int i = 0; i < 1000; ++i)
+        expected += segment((i - 499.5) / 500 + turned / width - edge) / 1000;
+      expectShare({e.mean[0] * pi, e.error[0] * pi}, expected, std::to_string(edge));
+    }
 }
 
 // A disk below the sun's: partial, annular and total shadow.

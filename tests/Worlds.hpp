@@ -123,11 +123,13 @@ struct Estimate {
   std::array<double, 4> mean{}, error{};
 };
 
-inline Estimate estimate(const World& world, const RadiometryOptions& options,
-                         Radiometry::Ray ray, std::uint64_t pixels) {
+template <class RayOf>
+Estimate estimateOver(const World& world, const RadiometryOptions& options, RayOf rayOf,
+                      std::uint64_t pixels) {
   const Radiometry radiometry(world, std::make_shared<RayTracer>(world.geometry), options);
   std::array<double, 4> sum{}, squares{}, out{};
-  for (ray.pixel = 0; ray.pixel < pixels; ++ray.pixel) {
+  for (std::uint64_t pixel = 0; pixel < pixels; ++pixel) {
+    const Radiometry::Ray ray = rayOf(pixel);
     radiometry.radiance({&ray, 1}, out);
     for (std::size_t c = 0; c < 4; ++c) sum[c] += out[c], squares[c] += out[c] * out[c];
   }
@@ -138,5 +140,14 @@ inline Estimate estimate(const World& world, const RadiometryOptions& options,
     made.error[c] = std::sqrt(std::max(0.0, squares[c] / n - made.mean[c] * made.mean[c]) / n);
   }
   return made;
+}
+
+inline Estimate estimate(const World& world, const RadiometryOptions& options,
+                         Radiometry::Ray ray, std::uint64_t pixels) {
+  const auto rayOf = [&](std::uint64_t pixel) {
+    ray.pixel = pixel;
+    return ray;
+  };
+  return estimateOver(world, options, rayOf, pixels);
 }
 }  // namespace malus::testing
