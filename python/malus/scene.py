@@ -76,8 +76,14 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
     return xr.Dataset(variables, coordinates, attributes)
 
 
+def _word(value: object) -> str:
+    """As the command line would have it."""
+    return "" if value is None else str(value)
+
+
 def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iterable[int] | None = None,
-           tile: Sequence[int] | None = None, seed: int | None = None, batches: int = 1, threads: int = 0,
+           tile: Sequence[int] | None = None, seed: int | None = None, batches: int | None = None,
+           until: float | str | None = None, at_most: int | None = None, threads: int = 0,
            base: str | os.PathLike[str] | None = None, progress: bool | Watcher = False) -> xr.Dataset:
     """Polarimetric pictures of a scene, in memory.
 
@@ -91,8 +97,13 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
         Only this part of the picture; x1 and y1 are beyond its end.
     seed : int, optional
         Instead of the scene's.
-    batches : int
-        Independent estimates of each pixel, of which the picture is the mean; from 2 on with its standard error.
+    batches : int, optional
+        Independent estimates of each pixel, of which the picture is the mean; from 2 on with its standard error. 1 if not given.
+    until : float or str, optional
+        How large the standard error may be: of S0 relative to it (0.01, "1%"), or of the DoLP ("dolp=0.002"). Each pixel gets the
+        batches that it needs after the first 16, or `batches`.
+    at_most : int, optional
+        With `until`, rays of a pixel at most; 100000 if not given.
     threads : int
         0 for all processors. The numbers do not depend on it.
     base : path, optional
@@ -122,7 +133,8 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
         raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
     path, text = (None, json.dumps(scene, default=_plain)) if isinstance(scene, dict) else (os.fspath(scene), "")
     try:
-        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher, batches))
+        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher,
+                                      _word(batches), _word(until), _word(at_most)))
     finally:
         if bar:
             bar.close()
