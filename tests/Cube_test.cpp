@@ -202,7 +202,8 @@ TEST(CubeIdentity, BadCubesAreNamed) {
   EXPECT_NE(complaint(scratch / "none.img").find("none.img: is not there"), std::string::npos);
   EXPECT_NE(complaint(scratch.path).find("is a directory"), std::string::npos);
   put(scratch / "alone.img", "numbers");
-  EXPECT_NE(complaint(scratch / "alone.img").find("alone.img: has no .hdr beside it"), std::string::npos);
+  EXPECT_NE(complaint(scratch / "alone.img").find("alone.img: has no .hdr beside it"),
+            std::string::npos);
   writeAll(scratch / "x.img");
   EXPECT_EQ(complaint(scratch / "x.img"), "none");
   const std::string text = contents(scratch / "x.img.hdr");

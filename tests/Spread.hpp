@@ -40,7 +40,8 @@ struct Series {
 };
 using AllSeries = std::vector<Series>;  // [pixel][component]
 
-inline void append(AllSeries& all, std::span<const double> stokes, std::span<const double> errors) {
+inline void append(AllSeries& all, std::span<const double> stokes,
+                   std::span<const double> errors) {
   all.resize(stokes.size());
   for (std::size_t i = 0; i < stokes.size(); ++i) {
     const double error = errors[i / 4 * StokesErrors::numbers + i % 4];
@@ -68,7 +69,7 @@ struct Judgement {
   std::size_t pixels = 0;
 };
 inline std::array<Judgement, 4> judge(const AllSeries& all) {
-  inline std::array<Judgement, 4> judged;
+  std::array<Judgement, 4> judged;
   for (std::size_t c = 0; c < 4; ++c) {
     double chi_squared = 0;
     for (std::size_t i = c; i < all.size(); i += 4) {
@@ -95,7 +96,8 @@ inline std::array<Judgement, 4> judge(const AllSeries& all) {
 // distribution, which makes of this level about one in a hundred thousand: still no false alarm in a lifetime of runs.
 constexpr double by_chance = 1e-6;
 
-inline double ratioOf(const AllSeries& all, std::size_t c) {  // claimed over observed, of the sums
+inline double ratioOf(const AllSeries& all,
+                      std::size_t c) {  // claimed over observed, of the sums
   double claimed = 0, observed = 0;
   for (std::size_t i = c; i < all.size(); i += 4) {
     const auto n = double(all[i].values.size());

@@ -196,8 +196,9 @@ TEST(SunDiskPublished, PixelsAverageThePenumbra) {
   for (const double edge : {-0.6, -0.3, 0.0, 0.4, 0.7})
     for (const bool across : {true, false}) {
       const double x = edge * width;
-      const auto roof = across ? std::vector<CDVector>{{-5, -50, h}, {x, -50, h}, {x, 50, h}, {-5, 50, h}}
-                               : std::vector<CDVector>{{-50, -5, h}, {50, -5, h}, {50, x, h}, {-50, x, h}};
+      const auto roof =
+          across ? std::vector<CDVector>{{-5, -50, h}, {x, -50, h}, {x, 50, h}, {-5, 50, h}}
+                 : std::vector<CDVector>{{-50, -5, h}, {50, -5, h}, {50, x, h}, {-50, x, h}};
       const World world = sunlit(groundUnder(above(roof, {{0, 1, 2}, {0, 2, 3}})), {0, 0, 1});
       const Estimate e = estimateOver(world, rays(Sampling::importance, {1}), rayOf, pixels);
       double expected = 0;

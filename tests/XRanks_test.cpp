@@ -13,7 +13,8 @@ namespace {
 /// A folder like validation/ with the rows of so many measurements.
 struct RanksReport : Scratch {
   explicit RanksReport(const std::string& rows) {
-    put(path / "ranks.csv", "# title: made up\n# date: 2002-05-01\nranks,tiles,work_s,film_tile_s\n" + rows);
+    put(path / "ranks.csv",
+        "# title: made up\n# date: 2002-05-01\nranks,tiles,work_s,film_tile_s\n" + rows);
     std::filesystem::copy("validation/claims.csv", path / "claims.csv");
   }
 };
