@@ -45,6 +45,9 @@ TEST(ClaimTableIdentity, NegativeControlFaultyRowsAreRefused) {
   EXPECT_TRUE(refuses(first + first, "T1/a: stands twice"));
   EXPECT_TRUE(refuses("T1,a,theses,sentence,,,,,it falls,,falls\n", "none of the words"));
   EXPECT_TRUE(refuses("T1,a,thesis,hunch,,,,,it falls,,falls\n", "none of the words"));
+  EXPECT_TRUE(
+      refuses("T1,a,thesis,choice,,,,,it falls,,below 1\n", "gives a bound and no reason"));
+  EXPECT_EQ(complaint("T1,a,thesis,choice,,,,,it falls,,below 1: it was above\n"), "");
   EXPECT_TRUE(refuses("T1,a,input,digits,reproduced,,,,sigma .2,,same\n", "none of the words"));
   EXPECT_TRUE(refuses("T1,a,fitted,sentence,,,,,it falls,,falls\n", "does not go with"));
   EXPECT_TRUE(refuses("T1,a,thesis,sentence,,,sun:2,,it falls,,falls\n", "does not go with"));

@@ -24,7 +24,7 @@ Item freshItem(const std::string& kind = "thesis") {
   std::string rows = columns;
   for (const char name : std::string("abcdef"))
     rows += std::string("T0,") + name + "," + kind + ",choice,,,,10 .. 20,sentence " + name +
-            ",q," + (name == 'c' ? "within 1e-12: rounding" : "a reason") + "\n";
+            ",q," + (name == 'c' ? "within 1e-12: rounding" : "a bound: a reason") + "\n";
   put(scratch / "claims.csv", rows);
   return Item("T0", "nowhere", scratch.path);
 }
