@@ -12,6 +12,7 @@
 
 #include "Program.hpp"
 #include "malus/files/Cube.hpp"
+#include "malus/files/OutputLock.hpp"
 
 using namespace malus;
 
@@ -42,6 +43,22 @@ TEST(CommandProductsIdentity, DerivesFourNumbersAndDrawsThem) {
   EXPECT_TRUE(std::filesystem::exists(scratch / "x.550.rgb.png"));
   EXPECT_EQ(malusIn(scratch.path, "products x.img --all --out all").code, 0);
   EXPECT_TRUE(std::filesystem::exists(scratch / "all/x.450.S3.png"));
+}
+
+// Two runs that would write one file: the second is refused while the first holds the lock, and leaves nothing.
+TEST(CommandProductsInvariant, TwoRunsDoNotMixTheirProducts) {
+  const Scratch scratch;
+  cubeIn(scratch.path);
+  {
+    const OutputLock held(scratch / ".x.products.lock", 0, 0);
+    const Outcome second = malusIn(scratch.path, "products x.img");
+    EXPECT_EQ(second.code, 2);
+    EXPECT_NE(second.err.find("is held by another malus"), std::string::npos) << second.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "x.products.img"));
+    EXPECT_EQ(malusIn(scratch.path, "products x.img --out elsewhere").code, 0);
+  }
+  EXPECT_EQ(malusIn(scratch.path, "products x.img").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(scratch / ".x.products.lock"));
 }
 
 TEST(CommandProductsIdentity, BlackPixelsHaveNoProducts) {

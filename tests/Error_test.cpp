@@ -114,6 +114,16 @@ TEST(ErrorIdentity, ALongTextIsCutBetweenLetters) {
   EXPECT_EQ(std::string(InputError({}, "", part + "p", part).what()), part + "...; " + part);
 }
 
+// The limits hold for what is printed: three letters of a line that are written out as twelve.
+TEST(ErrorIdentity, ATextThatGrowsWhenItIsWrittenOutIsCutToo) {
+  const std::string zeros(1500, '\0');
+  const std::string message = InputError({zeros, 0, zeros}, zeros, zeros, zeros).what();
+  EXPECT_LT(message.size(), 6000u + 2 * 200 + 2 * 2000 + 30);  // the name of the file is whole
+  const std::string remedy = InputError({}, "", "", zeros).what();
+  EXPECT_EQ(remedy.substr(0, 6), "; \\x00");
+  EXPECT_EQ(remedy.size(), 2 + 2000 + 3u);
+}
+
 // Control characters are all below 32, and 127; bytes that are no UTF-8 are written like them,
 // one by one, wherever they stand.
 TEST(ErrorIdentity, ControlCharactersAndBrokenBytesAreSpelt) {

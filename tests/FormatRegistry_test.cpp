@@ -212,6 +212,37 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
 }
 
+// OpenEXR is for 4096 bands at most: beyond, it is left out with a word, or refused if it was named.
+TEST(FormatRegistryIdentity, AFormatThatIsNotForSoManyBandsIsLeftOutOrRefused) {
+  const Scratch scratch;
+  const auto scene = [&](int bands) {
+    std::string text = small_scene, list = "400";
+    for (int i = 1; i < bands; ++i) list += fmt::format(", {}", 400 + i * 0.05);
+    text.replace(text.find("450, 550, 650"), 13, list);
+    text.replace(text.find("\"width\": 8, \"height\": 6"), 23, "\"width\": 1, \"height\": 1");
+    put(scratch / "s.json", text);
+  };
+  scene(4097);
+  const Outcome named = malusIn(scratch.path, "render s.json --out o --write cube,exr");
+  EXPECT_EQ(named.code, 2);
+  EXPECT_EQ(named.err,
+            "command line: --write = exr: is for 4096 bands at most, and the scene has "
+            "4097; leave it out\n");
+  EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
+  const Outcome usual = malusIn(scratch.path, "render s.json --out o");
+  EXPECT_EQ(usual.code, 0) << usual.err;
+  EXPECT_NE(
+      usual.err.find("the output exr is for 4096 bands at most, and the scene has 4097; it is "
+                     "left out"),
+      std::string::npos)
+      << usual.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "o/s.exr"));
+  scene(4096);
+  const Outcome most = malusIn(scratch.path, "render s.json --out o");
+  EXPECT_EQ(most.code, 0) << most.err;
+  EXPECT_TRUE(std::filesystem::exists(scratch / "o/s.exr"));
+}
+
 TEST(FormatRegistryInvariant, EachFormatIsInTheHelp) {
   const std::string help = malusIn(".", "render --help").out;
   for (const OutputFormat& format : outputFormats())
