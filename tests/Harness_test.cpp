@@ -58,7 +58,7 @@ std::string asRows(const std::string& verdicts) {
   for (std::string line; std::getline(lines, line);) {
     const std::size_t verdict = line.rfind(',');
     rows += line.substr(0, verdict) + ",thesis,choice" + line.substr(verdict) +
-            ",,,,sentence of " + std::to_string(rows.size()) + ",,a reason\n";
+            ",,,,sentence of " + std::to_string(rows.size()) + ",,it is so: a reason\n";
   }
   return rows;
 }
@@ -264,7 +264,7 @@ TEST(HarnessInvariant, AcceptingMakesTheVerdictsCommittedAndKeepsOthers) {
   const ClaimTable rows = ClaimTable::read(data.path);
   ASSERT_EQ(rows.rows().size(), 5u);
   EXPECT_EQ(rows.find("T1", "good")->verdict, "reproduced");
-  EXPECT_EQ(rows.find("T1", "good")->criterion, "a reason");
+  EXPECT_EQ(rows.find("T1", "good")->criterion, "it is so: a reason");
   EXPECT_EQ(rows.find("T2", "first")->verdict,
             "reproduced");  // it failed, and keeps what it had
   EXPECT_TRUE(data.run({"T1"}).changes.empty());
