@@ -67,4 +67,31 @@ TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
     EXPECT_EQ(run(scratch, build + "/one"), 0);
   }
 }
+// In a project of one's own: malus is a folder of it, and its targets have the names of the installed ones.
+TEST(InstallInvariant, ItIsAFolderOfAnotherProject) {
+  const Scratch scratch;
+  put(scratch / "mine/CMakeLists.txt",
+      "cmake_minimum_required(VERSION 3.21)\nproject(mine CXX)\n"
+      "add_subdirectory(" MALUS_SOURCE
+      " malus EXCLUDE_FROM_ALL)\n"
+      "add_executable(sky " MALUS_SOURCE
+      "/examples/polarized_sky.cpp)\n"
+      "target_link_libraries(sky PRIVATE malus::malus)\n"
+      "get_target_property(options malus::malus INTERFACE_COMPILE_OPTIONS)\n"
+      "if(options MATCHES \"Werror|march\")\n  message(FATAL_ERROR \"${options}\")\nendif()\n");
+  EXPECT_EQ(run(scratch,
+                "cmake -S " + (scratch / "mine").string() + " -B " + (scratch / "b").string()),
+            0);
+  // the control: a target that malus does not have
+  put(scratch / "none/CMakeLists.txt",
+      "cmake_minimum_required(VERSION 3.21)\nproject(mine CXX)\n"
+      "add_subdirectory(" MALUS_SOURCE
+      " malus EXCLUDE_FROM_ALL)\n"
+      "add_executable(sky " MALUS_SOURCE
+      "/examples/polarized_sky.cpp)\n"
+      "target_link_libraries(sky PRIVATE malus::none)\n");
+  EXPECT_NE(run(scratch,
+                "cmake -S " + (scratch / "none").string() + " -B " + (scratch / "c").string()),
+            0);
+}
 }  // namespace
