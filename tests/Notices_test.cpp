@@ -114,7 +114,7 @@ TEST(NoticesIdentity, AnUpThatSmearsIsRefusedWithTheRemedy) {
   scene["platform"]["up"] = {1, -1, 0};
   expectIn("platform = ", complaint(scene));
   expectIn("moves 90.0 deg off the image's vertical, along the rows", complaint(scene));
-  expectIn("give \"up\": [0.841", complaint(scene));
+  expectIn("give \"up\": [0.707", complaint(scene));
   scene["platform"]["up"] = {0, 1, 0.2};
   EXPECT_EQ(complaint(scene), "") << "45 degrees lean and do not smear";
   expectIn("the flight is 45.0 deg off the picture's vertical", sceneOf(scene).notices.at(0));
