@@ -13,6 +13,7 @@
 
 #define MALUS_SCENES "scenes"  // tests run in the project's directory
 #define MALUS_DOOR(name) static int name##Door(const std::uint8_t* data, std::size_t size)
+#include "fuzz/cube.cpp"
 #include "fuzz/measured.cpp"
 #include "fuzz/mesh.cpp"
 #include "fuzz/scene.cpp"
@@ -21,7 +22,8 @@
 
 namespace {
 using Door = int (*)(const std::uint8_t*, std::size_t);
-const std::vector<std::pair<std::string, Door>> doors{{"measured", measuredDoor},
+const std::vector<std::pair<std::string, Door>> doors{{"cube", cubeDoor},
+                                                      {"measured", measuredDoor},
                                                       {"mesh", meshDoor},
                                                       {"scene", sceneDoor},
                                                       {"scenes", scenesDoor},

@@ -3,7 +3,7 @@
 # Ends with 1 if one of them found something; what it found lies in BUILD/found.
 set -e
 build=$1
-each=$(($2 / 5))
+each=$(($2 / 6))
 root=$(cd "$(dirname "$0")/../.." && pwd)
 mkdir -p "$build/found"
 TMPDIR=$(mktemp -d)
@@ -28,16 +28,17 @@ seed table Q "$root"/scenes/data/grass.csv
 seed table R "$root"/scenes/data/copper.csv
 seed table S "$root"/scenes/data/*.yml
 seed table T "$root"/tests/fuzz/sky.csv
+seed table G "$root"/tests/fuzz/greek.csv
 
 # small letters begin with a valid file of the kind (measured.cpp); former findings are in corpus/
 for kind in k c m e; do mkdir -p "$build/corpus/measured"; printf "%s0123456789" "$kind" >"$build/corpus/measured/$kind"; done
-for door in scene scenes mesh table measured; do
+for door in scene scenes mesh table measured cube; do
   mkdir -p "$build/corpus/$door"
   cp "$root/tests/fuzz/corpus/$door/"* "$build/corpus/$door/"
 done
 
 status=0
-for door in scene scenes mesh table measured; do
+for door in scene scenes mesh table measured cube; do
   echo "== $door: $each s"
   "$build/fuzz_$door" -max_total_time="$each" -timeout=20 -rss_limit_mb=4096 -max_len=40000 -print_final_stats=1 \
     -dict="$root/tests/fuzz/words.dict" -artifact_prefix="$build/found/$door-" "$build/corpus/$door" \

@@ -1,9 +1,10 @@
-// The doors for tables: the first byte says what the rest is taken for.
+// The doors for tables: the first byte says what the rest is taken for; G is a scatterer by its Greek constants.
 #include "malus/base/Table.hpp"
 
 #include <sstream>
 
 #include "Door.hpp"
+#include "malus/air/Scatterer.hpp"
 #include "malus/air/Sky.hpp"
 #include "malus/air/TableSky.hpp"
 #include "malus/files/OpticalConstants.hpp"
@@ -29,12 +30,18 @@ void asSky(const std::string& text) {
   std::istringstream stream(text);
   const TableSky sky(Table::parse(stream, "sky.csv"), grid());
 }
+
+void asScatterer(const std::string& text) {
+  std::istringstream stream(text);
+  Scatterer::read(Table::parse(stream, "scatterer.csv"));
+}
 }  // namespace
 
 MALUS_DOOR(table) {
   if (size == 0) return 0;
   const std::string text = fuzzing::textOf(data + 1, size - 1);
   return fuzzing::knock([&] {
+    if (data[0] == 'G') return asScatterer(text);
     switch (data[0] % 5) {
       case 0:
         return asNumbers(text);
