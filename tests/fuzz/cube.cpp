@@ -2,6 +2,7 @@
 #include "malus/files/Cube.hpp"
 
 #include "Door.hpp"
+#include "malus/files/Quicklooks.hpp"
 
 using namespace malus;
 
