@@ -17,6 +17,15 @@ using namespace malus::testing;
 namespace {
 constexpr std::size_t first = 16;
 
+/// How many batches the halves of a pixel without neighbours get.
+std::array<std::size_t, 2> neededOf(const HalvedMeans& means, const Aim& aim,
+                                    std::uint64_t most_rays = 1'000'000) {
+  Batches batches(first);
+  batches.until = aim, batches.most_rays = most_rays;
+  const FirstBatches own = means.first(aim);
+  return neededBatches(batches, own, {&own, 1});
+}
+
 /// Means of many pixels whose batches all come from draw(), and what they claim.
 struct Pixels {
   std::size_t count = 0;
@@ -37,7 +46,7 @@ Pixels pixelsOf(Draw draw, const Aim& aim, bool crossed, std::size_t pixels) {
   for (std::size_t p = 0; p < pixels; ++p) {
     HalvedMeans means(1, first);
     for (std::size_t b = 0; b < first; ++b) means.add(b, std::array{draw(), 0.0, 0.0, 0.0}, 1);
-    auto needed = means.needed(aim, 1'000'000);
+    auto needed = neededOf(means, aim);
     if (!crossed) std::swap(needed[0], needed[1]);
     for (std::size_t b = first; b < 2 * std::max(needed[0], needed[1]); ++b)
       if (b / 2 < needed[b % 2]) means.add(b, std::array{draw(), 0.0, 0.0, 0.0}, 1);
@@ -63,7 +72,7 @@ TEST(AccuracyInvariant, RareBrightBatchesLeaveTheMeanWhereItIs) {
     HalvedMeans means(1, first);
     for (int b = 0; b < int(first); ++b)
       means.add(std::size_t(b), std::array{b / 2 < k ? 10.0 : 1.0, 0.0, 0.0, 0.0}, 1);
-    const double share = 8 / double(means.needed(aim, 1'000'000)[0]);
+    const double share = 8 / double(neededOf(means, aim)[0]);
     decided += chance * share, both += chance * share * (1 + 9 * k / 8.0);
   }
   const double c = both - decided * mean;
@@ -97,13 +106,13 @@ TEST(AccuracyIdentity, BatchesNeededByHand) {
   const double step = 0.1 * std::sqrt(7.0 / 8);
   for (std::size_t b = 0; b < first; ++b)
     means.add(b, std::array{b / 2 % 2 ? 1 + step : 1 - step, 0.0, 0.0, 0.0}, 1);
-  EXPECT_EQ(means.needed({Aim::Of::s0, 0.0101}, 1000), (std::array<std::size_t, 2>{69, 69}));
-  EXPECT_EQ(means.needed({Aim::Of::s0, 0.2}, 1000), (std::array<std::size_t, 2>{8, 8}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.0101}, 1000), (std::array<std::size_t, 2>{69, 69}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.2}, 1000), (std::array<std::size_t, 2>{8, 8}));
   // a ray a batch: 50 rays are 25 batches for each half, and 3 are no reason to have less than the first
-  EXPECT_EQ(means.needed({Aim::Of::s0, 0.01}, 50), (std::array<std::size_t, 2>{25, 25}));
-  EXPECT_EQ(means.needed({Aim::Of::s0, 0.01}, 3), (std::array<std::size_t, 2>{8, 8}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.01}, 50), (std::array<std::size_t, 2>{25, 25}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.01}, 3), (std::array<std::size_t, 2>{8, 8}));
   // no polarisation, no light: nothing to be sure of
-  EXPECT_EQ(means.needed({Aim::Of::dolp, 0.01}, 1000), (std::array<std::size_t, 2>{8, 8}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::dolp, 0.01}, 1000), (std::array<std::size_t, 2>{8, 8}));
   EXPECT_THROW(HalvedMeans(1, 6), MathError);
   EXPECT_THROW(HalvedMeans(1, 9), MathError);
 }
@@ -116,7 +125,18 @@ TEST(AccuracyIdentity, EachHalfDecidesForTheOther) {
     const double s0 = 1 + sign * spread * std::sqrt(7.0 / 8);
     means.add(b, std::array{1.0, 0.0, 0.0, 0.0, s0, 0.0, 0.0, 0.0}, 1);
   }
-  EXPECT_EQ(means.needed({Aim::Of::s0, 0.0101}, 1000), (std::array<std::size_t, 2>{69, 18}));
+  EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.0101}, 1000), (std::array<std::size_t, 2>{69, 18}));
+}
+
+// Nine pixels around one, of which one has seen something: the same half of all of them decides, and the own one if it
+// has seen more.
+TEST(AccuracyIdentity, NeighboursDecideWithTheSameHalf) {
+  Batches batches(first);
+  batches.until = Aim{Aim::Of::s0, 0.01};
+  std::vector<FirstBatches> around(9, FirstBatches{{0, 0}, {1, 1}});
+  around[3].spread = {900, 90};
+  EXPECT_EQ(neededBatches(batches, around[0], around), (std::array<std::size_t, 2>{8, 70}));
+  EXPECT_EQ(neededBatches(batches, around[3], around), (std::array<std::size_t, 2>{63, 630}));
 }
 
 TEST(AccuracyInvariant, TheDegreeOfPolarisationMeetsItsAim) {
@@ -132,7 +152,7 @@ TEST(AccuracyInvariant, TheDegreeOfPolarisationMeetsItsAim) {
       if (b / 2 >= needed[b % 2]) continue;
       const double s0 = 1 + 0.03 * normal(engine);
       means.add(b, std::array{s0, 0.3 * s0 + 0.05 * normal(engine), 0.4 * s0, 0.0}, 1);
-      if (b + 1 == first) needed = means.needed(aim, 1'000'000);
+      if (b + 1 == first) needed = neededOf(means, aim);
     }
     const double dolp = std::hypot(means.mean(1), means.mean(2)) / means.mean(0);
     const CDStokesVector s(means.mean(0), means.mean(1), means.mean(2), means.mean(3));

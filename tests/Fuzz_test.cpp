@@ -22,12 +22,9 @@
 
 namespace {
 using Door = int (*)(const std::uint8_t*, std::size_t);
-const std::vector<std::pair<std::string, Door>> doors{{"cube", cubeDoor},
-                                                      {"measured", measuredDoor},
-                                                      {"mesh", meshDoor},
-                                                      {"scene", sceneDoor},
-                                                      {"scenes", scenesDoor},
-                                                      {"table", tableDoor}};
+const std::vector<std::pair<std::string, Door>> doors{
+    {"cube", cubeDoor},   {"measured", measuredDoor}, {"mesh", meshDoor},
+    {"scene", sceneDoor}, {"scenes", scenesDoor},     {"table", tableDoor}};
 
 int knockWith(Door door, const std::string& bytes) {
   return door(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());

@@ -101,7 +101,7 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
         Independent estimates of each pixel, of which the picture is the mean; from 2 on with its standard error. 1 if not given.
     until : float or str, optional
         How large the standard error may be: of S0 relative to it (0.01, "1%"), or of the DoLP ("dolp=0.002"). Each pixel gets the
-        batches that it needs after the first 16, or `batches`.
+        batches that it needs after the first 32, or `batches`.
     at_most : int, optional
         With `until`, rays of a pixel at most; 100000 if not given.
     threads : int

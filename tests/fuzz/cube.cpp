@@ -7,7 +7,8 @@
 using namespace malus;
 
 MALUS_DOOR(cube) {
-  const std::string text = fuzzing::textOf(data, size), header = text.substr(0, text.find('\0'));
+  const std::string text = fuzzing::textOf(data, size),
+                    header = text.substr(0, text.find('\0'));
   const auto path =
       fuzzing::fileWith(text.substr(std::min(text.size(), header.size() + 1)), ".img");
   std::ofstream(path.string() + ".hdr", std::ios::binary | std::ios::trunc) << header;
