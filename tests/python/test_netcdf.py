@@ -78,7 +78,8 @@ def test_errors_are_those_of_the_cube_and_of_the_module(folder: Path) -> None:
     for batches, words in ((0, "is no number of batches"), (4097, "give a number from 1 to 4096")):
         with pytest.raises(ValueError, match=words):
             malus.render(folder / "plate.json", batches=batches)
-    run_malus("render", folder / "plate.json", "--frames", "1", "--until", "dolp=0.05", "--batches", "8", "--out", folder / "sure", "--write", "cube,error")
+    aim = ("--until", "dolp=0.05", "--batches", "8")
+    run_malus("render", folder / "plate.json", "--frames", "1", *aim, "--out", folder / "sure", "--write", "cube,error")
     sure = malus.render(folder / "plate.json", frames=1, until="dolp=0.05", batches=8)
     cube = np.fromfile(folder / "sure/plate.0001.img", dtype="<f4").reshape(1, 16, 24, 2, 4)
     assert np.array_equal(sure.radiance.values, cube) and sure.rays.values.max() > sure.rays.values.min()
