@@ -184,8 +184,8 @@ def scaling(home: Path, scene: dict[str, Any], record: Path) -> None:
         after = os.times()
         return after.children_user + after.children_system - before.children_user - before.children_system
 
-    def least_s(*arguments: Any) -> float:
-        return min(once_s(*arguments) for _ in range(TIMES))
+    def least_s(ranks: int, scene_file: str, *more: str) -> float:
+        return min(once_s(ranks, scene_file, *more) for _ in range(TIMES))
 
     one_tile = ("--part", "0,0,16,16")
     film = (least_s(1, "film.json", "--frames", "0") - least_s(1, "film.json", "--frames", "0", *one_tile)) / 255
