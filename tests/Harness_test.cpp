@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "Scratch.hpp"
 
@@ -18,13 +19,14 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 const std::string columns =
     "item,claim,kind,source,verdict,repeats,fit,limit,sentence,quantity,criterion\n";
 
-/// An item T0 with rows for the claims a to f, all of one kind.
+/// An item T0 with rows for the claims a to f, all of one kind; x to z have a limit.
 Item freshItem(const std::string& kind = "thesis") {
   const Scratch scratch;
   std::string rows = columns;
-  for (const char name : std::string("abcdef"))
-    rows += std::string("T0,") + name + "," + kind + ",choice,,,,10 .. 20,sentence " + name +
-            ",q," + (name == 'c' ? "within 1e-12: rounding" : "a bound: a reason") + "\n";
+  for (const char name : std::string("abcdefxyz"))
+    rows += std::string("T0,") + name + "," + kind + ",choice,,,," +
+            (name < 'x' ? "" : "10 .. 20") + ",sentence " + name + ",q," +
+            (name == 'c' ? "within 1e-12: rounding" : "a bound: a reason") + "\n";
   put(scratch / "claims.csv", rows);
   return Item("T0", "nowhere", scratch.path);
 }
@@ -210,12 +212,31 @@ TEST(HarnessIdentity, TheToleranceOfTheCodeIsThatOfTheTable) {
 
 TEST(HarnessIdentity, ALimitOfTheTableJudges) {
   Item item = freshItem();
-  item.measured("a", 10);
+  item.measured("x", 10);
   EXPECT_EQ(last(item), Verdict::reproduced);
-  item.measured("b", 20.000001);
+  item.measured("y", 20.000001);
   EXPECT_EQ(last(item), Verdict::differs);
-  item.measured("d", not_a_number);
+  item.measured("z", not_a_number);
   EXPECT_EQ(last(item), Verdict::differs);
+}
+
+TEST(HarnessIdentity, TheWorstOfSeveralCasesForgetsNoNaN) {
+  EXPECT_EQ(leastOf({3, 1, 2}), 1);
+  EXPECT_EQ(mostOf({1, 3, 2}), 3);
+  const std::vector<std::vector<double>> cases_without{
+      {1, not_a_number}, {not_a_number, 1}, {}};
+  for (const std::vector<double>& cases : cases_without) {
+    EXPECT_TRUE(std::isnan(leastOf(cases)));
+    EXPECT_TRUE(std::isnan(mostOf(cases)));
+  }
+}
+
+TEST(HarnessIdentity, ALimitOfTheTableMustBeRead) {
+  Item item = freshItem();
+  EXPECT_THROW(item.statement("x", true, "e"), InvariantError);
+  EXPECT_TRUE(item.meets("x", 20));
+  EXPECT_FALSE(item.meets("y", not_a_number));
+  EXPECT_NO_THROW(item.statement("x", true, "e"));
 }
 
 TEST(HarnessIdentity, InputsAndPropertiesOfTheProgramHaveNoVerdict) {
