@@ -82,6 +82,15 @@ def _panel(axes: "Axes", picture: Array, title: str, scale: Any, top: float, sky
         bar.set_ticks([0, 45, 90, 135, 180])
 
 
+def _chosen(light: xr.DataArray, axis: str, index: int) -> xr.DataArray:
+    """One of an axis, counted from 0; the light itself if a selection has left only one."""
+    if axis not in light.dims:
+        return light
+    if not -light.sizes[axis] <= index < light.sizes[axis]:
+        raise ValueError(f"malus.plot: {axis} = {index}: is not there; they are counted from 0 to {light.sizes[axis] - 1}")
+    return light.isel({axis: index})
+
+
 def _mark_sky(axes: "Axes", sun_deg: float | None, background: str) -> None:
     """Horizon, rings of 30 and 60 degrees, and the sun."""
     turn = np.linspace(0, 2 * np.pi, 361)
@@ -127,8 +136,9 @@ class MalusAccessor:
         light = self._dataset.radiance
         sky = "zenith_deg" in light.dims
         bands = "wavelength_nm" if sky else "band"
-        chosen = light.sizes[bands] // 2 if band is None else band
-        light = light.isel({bands: chosen, **({} if sky else {"frame": frame})})
+        light = _chosen(light, bands, light.sizes.get(bands, 0) // 2 if band is None else band)
+        if not sky:
+            light = _chosen(light, "frame", frame)
         stokes = _fisheye(light) if sky else light.transpose("y", "x", "stokes").values
         if stokes.shape[-1] < 3:
             raise ValueError("malus.plot: the dataset lacks S1 or S2; it was measured without")
@@ -152,7 +162,7 @@ class MalusAccessor:
                 _mark_sky(panel, None if cosine is None else float(np.degrees(np.arccos(cosine))), "white")
             else:
                 panel.tick_params(labelsize=8, length=2)
-        where = light.coords[bands].item() if sky else light.coords.get("wavelength_nm", light.coords[bands]).item()
+        where = next((light.coords[name].item() for name in ("wavelength_nm", bands) if name in light.coords), "")
         heading = str(self._dataset.attrs.get("title", ""))
         suffix = f"{where:g} nm" if isinstance(where, float) and np.isfinite(where) else str(where) if isinstance(where, str) else ""
         figure.suptitle(", ".join(word for word in (heading, suffix) if word), fontsize=12)

@@ -170,6 +170,23 @@ def _of_cube(found: dict[str, Any]) -> xr.Dataset:
                       coordinates, attributes)
 
 
+def _demand_frames(paths: list[str], frames: list[xr.Dataset]) -> None:
+    """Frames of one picture: the same pixels, bands and components, and no frame twice."""
+    def differ(name: str) -> bool:
+        return (name in first.coords) != (name in frame.coords) or name in first.coords and not first[name].equals(frame[name])
+
+    first, seen = frames[0], {frames[0].frame.item(): paths[0]}
+    for path, frame in zip(paths[1:], frames[1:]):
+        for name in ("y", "x", "band", "stokes"):
+            if differ(name):
+                raise ValueError(f"malus.open: {path}: has other coordinates {name} than {paths[0]}; open what are no frames of one "
+                                 "picture one by one, and put parts together with malus merge")
+        number = frame.frame.item()
+        if number in seen:
+            raise ValueError(f"malus.open: {path}: is frame {number}, as {seen[number]} is; put parts together with malus merge")
+        seen[number] = path
+
+
 def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.Dataset:  # pylint: disable=redefined-builtin
     """A cube of malus, or those of several frames, as a dataset.
 
@@ -187,8 +204,11 @@ def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.
     Raises
     ------
     ValueError
-        For a file that is no such cube, with its place.
+        For a file that is no such cube, with its place; for cubes that are not frames of one picture.
     """
     paths = [cube] if isinstance(cube, str | os.PathLike) else list(cube)
+    if not paths:
+        raise ValueError("malus.open: cube: names no cube; give one at least")
     frames = [_of_cube(_malus.read_cube(os.fspath(path))) for path in paths]
-    return frames[0] if len(frames) == 1 else xr.concat(frames, dim="frame", combine_attrs="drop_conflicts")
+    _demand_frames([os.fspath(path) for path in paths], frames)
+    return frames[0] if len(frames) == 1 else xr.concat(frames, dim="frame", combine_attrs="drop_conflicts", join="exact")

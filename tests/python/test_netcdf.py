@@ -90,6 +90,21 @@ def test_errors_are_those_of_the_cube_and_of_the_module(folder: Path) -> None:
         malus.render(grid, batches=2)
 
 
+def test_what_are_no_frames_of_one_picture_is_not_joined(folder: Path) -> None:
+    for part in ("0,0,8,8", "8,8,16,16", "1/2", "2/2"):
+        run_malus("render", folder / "plate.json", "--frames", "0", "--part", part, "--out", folder / "parts", "--write", "cube,truth")
+    tiles = sorted((folder / "parts").glob("plate.0000.*-*-*-??.img")) + sorted((folder / "parts").glob("plate.0000.0-0-8-8.img"))
+    strips = sorted((folder / "parts").glob("plate.0000.part-?-of-2.img"))
+    assert len(tiles) == len(strips) == 2
+    whole = folder / "out/plate.0000.img"
+    for paths, words in ((tiles, "has other coordinates y than"), (strips, "is frame 0, as .* is; put parts together with malus merge"),
+                         ([whole, whole], "is frame 0, as"), ([], "names no cube")):
+        with pytest.raises(ValueError, match=words):
+            malus.open(paths)
+    film = malus.open([whole, folder / "out/plate.0001.img"])
+    assert film.frame.values.tolist() == [0, 1] and np.isfinite(film.radiance).all()
+
+
 def test_negative_control_another_frame_has_other_bits(folder: Path) -> None:
     with xr.open_dataset(folder / "out/plate.0000.nc") as first, xr.open_dataset(folder / "out/plate.0001.nc") as second:
         assert not np.array_equal(first.radiance.values, second.radiance.values)

@@ -71,6 +71,21 @@ def test_a_picture_without_light_is_grey() -> None:
     assert np.allclose(image(figure.axes[1])[2, 1], [0.5, 0.5, 0.5, 1]) and np.allclose(image(figure.axes[2])[0, 0, :3], [1, 0, 0])
 
 
+def test_a_selection_is_drawn_and_what_is_not_there_is_named() -> None:
+    """A band or a frame that was chosen before is the one that is drawn."""
+    light = np.zeros((2, 4, 5, 3, 4), np.float32)
+    light[..., 0] = 1
+    light[1, :, :, 2, 1] = 0.5
+    ds = xr.Dataset({"radiance": (("frame", "y", "x", "band", "stokes"), light)}, {"band": ["450", "550", "650"]})
+    whole = image(ds.malus.plot(frame=1, band=2).axes[2])
+    for chosen in (ds.isel(frame=1, band=2), ds.isel(frame=1).sel(band="650", drop=True), ds.isel(frame=[1], band=[2])):
+        assert np.array_equal(image(chosen.malus.plot().axes[2]), whole)
+    assert not np.array_equal(image(ds.isel(frame=0, band=2).malus.plot().axes[2]), whole)  # negative control
+    for call, words in (({"band": 3}, r"band = 3: is not there; they are counted from 0 to 2"), ({"frame": 5}, "frame = 5")):
+        with pytest.raises(ValueError, match=words):
+            ds.malus.plot(**call)
+
+
 def test_other_datasets_are_refused() -> None:
     with pytest.raises(ValueError, match="has no Stokes radiance"):
         xr.Dataset({"a": ("x", [1.0])}).malus.plot()
