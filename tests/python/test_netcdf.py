@@ -97,8 +97,10 @@ def test_what_are_no_frames_of_one_picture_is_not_joined(folder: Path) -> None:
     strips = sorted((folder / "parts").glob("plate.0000.part-?-of-2.img"))
     assert len(tiles) == len(strips) == 2
     whole = folder / "out/plate.0000.img"
-    for paths, words in ((tiles, "has other coordinates y than"), (strips, "is frame 0, as .* is; put parts together with malus merge"),
-                         ([whole, whole], "is frame 0, as"), ([], "names no cube")):
+    cases: list[tuple[list[Path], str]] = [(tiles, "has other coordinates y than"),
+                                           (strips, "is frame 0, as .* is; put parts together with malus merge"),
+                                           ([whole, whole], "is frame 0, as"), ([], "names no cube")]
+    for paths, words in cases:
         with pytest.raises(ValueError, match=words):
             malus.open(paths)
     film = malus.open([whole, folder / "out/plate.0001.img"])
