@@ -6,6 +6,7 @@ BUILD  := build
 NEED   ?= doc/weaver/need.sh
 JOBS   ?= $(shell nproc)
 GENERATOR = $(if $(shell command -v ninja),-G Ninja)
+CONFIGURE = $(GENERATOR) $(if $(CI),-DMALUS_WERROR=ON)
 
 # What Debian 12 calls the things we stand on: to build and run; to weave the book, and to test its weaver.
 # The scripts name /usr/bin/python3, for which Debian's modules are installed: another Python may come first in PATH.
@@ -59,7 +60,7 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 	@$(BUILD)/malus_sky_bench
 	@! [ -d $(BUILD)/python/malus ] || PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/bench/python.py
 
-bench-build: need-test ## build afresh into build-bench, print the seconds of each part
+bench-build: need-test need-browser ## build HEAD afresh in build-bench, run its tests, edit it; record the seconds of each part
 	@tests/bench/build.py build-bench $(JOBS)
 
 format: ## let clang-format format the chapters' code and the tests
@@ -114,19 +115,19 @@ CLANG := clang libclang-rt-14-dev
 
 sanitize: need-test ## all tests but the book's under the address and undefined-behaviour sanitizers (by clang++)
 	@$(NEED) $(CLANG)
-	@cmake --preset sanitize $(GENERATOR) >/dev/null
+	@cmake --preset sanitize $(CONFIGURE) >/dev/null
 	@began=$$(date +%s) && cmake --build build-sanitize -j $(JOBS) && \
 	ctest --test-dir build-sanitize -LE book -j $(JOBS) --output-on-failure --progress && \
 	tests/clean-run.sh "make sanitize" build-sanitize $$began
 
 sanitize-core: need-test ## the same for the tests that reach most code for their time (tests/core.txt)
 	@$(NEED) $(CLANG)
-	@cmake --preset sanitize-core $(GENERATOR) >/dev/null
+	@cmake --preset sanitize-core $(CONFIGURE) >/dev/null
 	@cmake --build build-sanitize-core -j $(JOBS)
 	@ctest --test-dir build-sanitize-core -j $(JOBS) --output-on-failure --progress
 
 tsan: need-test ## the tests that run in several threads (tests/threads.txt) under the thread sanitizer
-	@cmake --preset tsan $(GENERATOR) >/dev/null
+	@cmake --preset tsan $(CONFIGURE) >/dev/null
 	@began=$$(date +%s) && cmake --build build-tsan -j $(JOBS) && \
 	ctest --test-dir build-tsan -j $(JOBS) --output-on-failure --progress && \
 	tests/clean-run.sh "make tsan" build-tsan $$began
@@ -138,12 +139,12 @@ mutants: need-test $(BUILD)/CMakeCache.txt ## plant small faults in the chapters
 
 clang: need-test ## all tests as compiled by clang++
 	@$(NEED) clang
-	@cmake --preset clang $(GENERATOR) >/dev/null
+	@cmake --preset clang $(CONFIGURE) >/dev/null
 	@cmake --build build-clang -j $(JOBS)
 	@ctest --test-dir build-clang -LE book -j $(JOBS) --output-on-failure --progress
 
 coverage: need-test ## which lines of nw/ the tests reach
-	@cmake --preset coverage $(GENERATOR) >/dev/null
+	@cmake --preset coverage $(CONFIGURE) >/dev/null
 	@cmake --build build-coverage -j $(JOBS)
 	@find build-coverage -name '*.gcda' -delete
 	@ctest --test-dir build-coverage -LE book -j $(JOBS) --output-on-failure --progress
@@ -152,7 +153,7 @@ coverage: need-test ## which lines of nw/ the tests reach
 FUZZ_SECONDS ?= 600
 fuzz: need-program ## throw mutilated scenes, meshes, tables and measured files at the readers (FUZZ_SECONDS=600 in all)
 	@$(NEED) $(CLANG)
-	@cmake --preset fuzz $(GENERATOR) >/dev/null
+	@cmake --preset fuzz $(CONFIGURE) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 
@@ -181,7 +182,7 @@ help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 $(BUILD)/CMakeCache.txt:
-	@cmake --preset release $(GENERATOR) $(if $(CI),-DMALUS_WERROR=ON) >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
+	@cmake --preset release $(CONFIGURE) >$(BUILD).configure.log 2>&1 || { cat $(BUILD).configure.log; exit 1; }
 	@rm -f $(BUILD).configure.log
 
 need-program:
