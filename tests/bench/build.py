@@ -1,23 +1,32 @@
 #!/usr/bin/python3
-"""What a build from an empty directory costs, part by part, without a compiler cache.
+"""What a build of HEAD from an empty directory costs, part by part, without a compiler cache, and what an edit costs.
 
-    build.py BUILD JOBS
+    build.py BENCH JOBS
 
-Builds into BUILD, which is emptied before. For each part it prints the CPU seconds
-of all its processes and the seconds on the clock; at the end the 15 files that took
-the compiler longest, as Ninja's log has them. CPU seconds depend little on JOBS and
-on the machine's other work, seconds on the clock much: measure on an idle machine.
+Clones HEAD into BENCH/tree, which is emptied before, and does there what `make` and `make test` do. For each part it
+prints the CPU seconds of all its processes and the seconds on the clock, and records them in validation/build-times.csv.
+Then it edits the code of some chapters that have a test of their own, spread evenly over the floors, one after the other:
+an edit costs the seconds on the clock from the change to the end of its test. At the end stand the files that took the
+compiler longest, as Ninja's log has them. CPU seconds depend little on JOBS and on the machine's other work, seconds
+on the clock much: measure on an idle machine.
 """
+import csv
+import datetime
+import glob
 import os
 import resource
 import shutil
+import statistics
 import subprocess
 import sys
 import time
 
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+RECORD = os.path.join(ROOT, "validation", "build-times.csv")
 # in the order of the build: a part has only what those before it have not made
-PARTS = (("library", ["libmalus", "libmalus_scenes"]), ("programs", ["malus", "mathtester"]), ("reproduce", ["reproduce"]),
-         ("weave", ["book"]), ("tests", ["all"]))
+PARTS = (("library", "libmalus libmalus_scenes"), ("programs", "malus mathtester"), ("reproduce", "reproduce"), ("weave", "book"),
+         ("rest of make", "everything"))
+EDITS = 9
 SLOWEST = 15
 
 
@@ -26,14 +35,39 @@ def cpu_seconds() -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def measured(command: list[str]) -> tuple[float, float]:
-    """(CPU seconds, seconds) of a command; what it prints is shown only if it fails."""
+def measured(tree: str, *commands: list[str]) -> tuple[float, float]:
+    """(CPU seconds, seconds) of commands; what they print is shown only if one fails."""
     cpu, start = cpu_seconds(), time.monotonic()
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          env={**os.environ, "CCACHE_DISABLE": "1"})
-    if done.returncode:
-        sys.exit(f"{' '.join(command)}\n{done.stdout}")
+    for command in commands:
+        done = subprocess.run(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              env={**os.environ, "CCACHE_DISABLE": "1"})
+        if done.returncode:
+            sys.exit(f"{' '.join(command)}\n{done.stdout}")
     return cpu_seconds() - cpu, time.monotonic() - start
+
+
+def build(jobs: str, targets: str) -> list[str]:
+    return ["cmake", "--build", "build", "-j", jobs, "--target", *targets.split()]
+
+
+def whole(name: str, rows: list[tuple[str, float, float]]) -> tuple[str, float, float]:
+    """The sum of all rows until now."""
+    return name, sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)
+
+
+def chapters(tree: str) -> list[str]:
+    """The chapters that are edited: of those with a test of their own, one in so many."""
+    tested = [path for path in sorted(glob.glob(os.path.join(tree, "nw", "*", "*.nw")))
+              if os.path.exists(os.path.join(tree, "tests", os.path.basename(path)[:-3] + "_test.cpp"))]
+    return [tested[len(tested) * (2 * k + 1) // (2 * EDITS)] for k in range(EDITS)]
+
+
+def edit(tree: str, chapter: str, jobs: str) -> tuple[str, float, float]:
+    """What it costs to give the code of a chapter a new name and to run its test."""
+    floor, name = os.path.basename(os.path.dirname(chapter)), os.path.basename(chapter)[:-3]
+    with open(chapter, "a", encoding="utf-8") as file:
+        file.write(f'\n<<{floor}/{name}.cpp>>=\nextern "C" {{\nextern int malus_edited_{name};\nint malus_edited_{name} = 1;\n}}\n@\n')
+    return f"edit {floor}/{name}", *measured(tree, build(jobs, name + "_test"), [f"build/tests/{name}_test"])
 
 
 def slowest(log: str) -> list[tuple[float, str]]:
@@ -51,16 +85,30 @@ def slowest(log: str) -> list[tuple[float, str]]:
 def main() -> None:
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    build, jobs = sys.argv[1:]
-    shutil.rmtree(build, ignore_errors=True)
-    rows = [("configure", *measured(["cmake", "--preset", "release", "-B", build, "-G", "Ninja"]))]
-    rows += [(name, *measured(["cmake", "--build", build, "-j", jobs, "--target", *targets])) for name, targets in PARTS]
-    rows.append(("all", sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)))
-    print(f"{'part':12}{'CPU s':>8}{'clock s':>9}   (-j {jobs})")
+    bench, jobs = os.path.abspath(sys.argv[1]), sys.argv[2]
+    tree = os.path.join(bench, "tree")
+    shutil.rmtree(bench, ignore_errors=True)
+    subprocess.run(["git", "clone", "-q", "--shared", ROOT, tree], check=True)
+    commit = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=tree, check=True, capture_output=True, text=True).stdout.strip()
+    rows = [("configure", *measured(tree, ["cmake", "--preset", "release", "-G", "Ninja"]))]
+    rows += [(name, *measured(tree, build(jobs, targets))) for name, targets in PARTS]
+    make = whole("make", rows)
+    rows.append(("compile tests", *measured(tree, build(jobs, "all"))))
+    rows.append(("run tests", *measured(tree, ["ctest", "--test-dir", "build", "-j", jobs, "--output-on-failure"])))
+    rows += [make, whole("make test", rows)]
+    log = slowest(os.path.join(tree, "build", ".ninja_log"))
+    edits = [edit(tree, chapter, jobs) for chapter in chapters(tree)]
+    rows += [*edits, ("edit, median", statistics.median(cpu for _, cpu, _ in edits), statistics.median(clock for _, _, clock in edits))]
+    with open(RECORD, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(("date", "commit", "jobs", "part", "cpu_s", "clock_s"))
+        today = datetime.datetime.now(datetime.timezone.utc).date()
+        table.writerows((today, commit, jobs, name, f"{cpu:.0f}", f"{clock:.0f}") for name, cpu, clock in rows)
+    print(f"{'part':32}{'CPU s':>8}{'clock s':>9}   (-j {jobs}, {commit})")
     for name, cpu, clock in rows:
-        print(f"{name:12}{cpu:8.0f}{clock:9.0f}")
+        print(f"{name:32}{cpu:8.0f}{clock:9.0f}")
     print(f"\nThe {SLOWEST} slowest files, seconds on the clock:")
-    for seconds, output in slowest(os.path.join(build, ".ninja_log")):
+    for seconds, output in log:
         print(f"{seconds:8.1f}  {output}")
 
 
