@@ -1,20 +1,21 @@
 # Panels of simulated images with one stretch and one colour bar (images.csv, images-panels.csv).
 #
-# <pictures>-panels.csv: title,column,low,high,map,across,unit: a row for each panel, in reading order. map is grey,
+# <pictures>-panels.csv: title,low,high,map,across,unit: a row for each panel, in reading order. map is grey,
 # level, signed or hue; across is the number of panels in a row; unit is the legend of the colour bar. Where not all
 # panels have one stretch and one map, each has a colour bar of its own; if only the last
 # differs, it has one below itself, and the others share theirs.
-# <pictures>.csv: x,y and the columns named there; x counts pixels from the left, y rows from the top.
+# <pictures>.csv: x, y and a column for each panel; x counts pixels from the left, y rows from the top. Columns are
+# asked for by number: for a name, gnuplot evaluates an expression at every pixel, which takes twice as long.
 if (!exists("pictures")) pictures = 'images'
 panels_file = pictures . '-panels.csv'
 set datafile separator ','
 set datafile columnheaders
 panels = 0
-array Title[64]; array Column[64]; array Low[64]; array High[64]; array Map[64]
+array Title[64]; array Low[64]; array High[64]; array Map[64]
 across = 1
 unit = ''
 stats panels_file using (panels = panels + 1, Title[panels] = strcol('title'), \
-  Column[panels] = strcol('column'), Low[panels] = column('low'), High[panels] = column('high'), \
+  Low[panels] = column('low'), High[panels] = column('high'), \
   Map[panels] = strcol('map'), across = column('across'), unit = strcol('unit'), 0) nooutput
 differs(i) = Low[i] != Low[1] || High[i] != High[1] || Map[i] ne Map[1]
 one_bar = 1
@@ -72,6 +73,7 @@ do for [i = 1:panels] {
       1 - (row * (panel + 26) + 24.0 + panel) / height size screen 8.0 / width, real(panel) / height
     set cblabel ''
   }
-  plot pictures . '.csv' using 'x':'y':Column[i] with image
+  number = i + 2
+  plot pictures . '.csv' using 1:2:number with image
 }
 unset multiplot
