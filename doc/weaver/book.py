@@ -78,7 +78,7 @@ class Links:
         return values
 
     def find_figure(self, name: str) -> str:
-        for folder in (self.options.report, os.path.join(self.options.book, "figures")):
+        for folder in (self.options.report, self.options.drawn, os.path.join(self.options.book, "figures")):
             for ending in (".svg", ".png"):
                 path = os.path.join(folder, name + ending)
                 if os.path.isfile(path):
@@ -88,7 +88,7 @@ class Links:
     def drawing(self, name: str) -> str:
         """The text of a figure that has links in it, whose addresses are labels; nothing for other figures."""
         path = self.figures[name]
-        if not path or not path.endswith(".svg") or not path.startswith(self.options.book):
+        if not path or not path.endswith(".svg") or path.startswith(self.options.report):
             return ""
         with open(path, encoding="utf-8") as file:
             text = file.read()
@@ -238,6 +238,7 @@ def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
+    arguments.add_argument("--drawn", default="", help="the folder of the figures that the build draws of the chapters")
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
     arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")
     arguments.add_argument("chapters", nargs="+")

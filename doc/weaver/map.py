@@ -4,8 +4,8 @@
     map.py ORDER MAP.svg [CHAPTER.nw...]
 
 ORDER (nw/order.txt) has a line for each chapter: floor/Name and the words of its
-box. A chapter that is on no line gets its own name. Run it when chapters come,
-go, or get another title; a test of the book compares the boxes with the chapters.
+box. A chapter that is on no line gets its own name. The build runs it; a test of
+the book compares the boxes with the chapters.
 """
 import html
 import sys
