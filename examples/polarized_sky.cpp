@@ -2,11 +2,12 @@
 #include <cmath>
 #include <cstdio>
 #include <malus/air/RayleighLight.hpp>
+#include <malus/base/Angles.hpp>
 #include <numbers>
 
 int main() {
   using namespace malus;
-  constexpr double degree = std::numbers::pi / 180, tau_550nm = 0.09707, albedo = 0.2;
+  constexpr double tau_550nm = 0.09707, albedo = 0.2;
   const RayleighAtmosphere air(tau_550nm, 0.0279);  // optical depth, depolarisation factor
   const RayleighLight light(air, std::cos(60 * degree), albedo, 1.0);
   std::puts("zenith_deg,DoLP");

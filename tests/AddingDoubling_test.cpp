@@ -10,6 +10,7 @@
 
 #include "ScatteredOnce.hpp"
 #include "malus/air/RayleighLight.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/CDVector.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Table.hpp"
@@ -18,7 +19,7 @@ using namespace malus;
 using malus::testing::scattered;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 double apart(const CDStokesVector& a, const CDStokesVector& b) {
   double most = 0;
   for (int i = 0; i < 4; ++i) most = std::max(most, std::abs(a.getStokes(i) - b.getStokes(i)));

@@ -5,17 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "Scratch.hpp"
 #include "malus/air/SkyRegistry.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/DataFiles.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
-
 Settings settingsOf(const SkyEntry& entry, const SpectralGridPtr& grid,
                     const std::vector<std::pair<std::string, std::string>>& given) {
   Arguments arguments;

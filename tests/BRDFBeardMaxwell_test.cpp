@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
 #include "malus/surface/ModelRegistry.hpp"
@@ -17,7 +18,6 @@ using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-constexpr double degree = pi / 180;
 
 BeardMaxwellParameters aluminium(std::size_t bands = 1, double rho_d = 0.02,
                                  double rho_v = 0.01) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/surface/ModelRegistry.hpp"
 
@@ -16,7 +17,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 constexpr auto shapes = {LobeShape::cone, LobeShape::cosine, LobeShape::exponential};
 
 BRDFDIRSIG surface(double rho, double height, double width_deg, LobeShape shape) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
 
@@ -16,7 +17,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 
 BRDFGlossyCoating coating(double n, double rho, double sigma) {
   const auto grid = SpectralGrid::make({550.0});

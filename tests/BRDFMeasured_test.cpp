@@ -11,6 +11,7 @@
 
 #include "ModelChecks.hpp"
 #include "Scratch.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -19,7 +20,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 
 /// Rough metal of two bands, without grooves: smooth in all directions.
 BRDFTorranceSparrow metal(double sigma = 0.3, std::vector<double> nm = {500, 600}) {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/surface/ModelRegistry.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
 constexpr double sphere = 20 * degree;
 
 BeardMaxwellParameters lasers() {

@@ -8,13 +8,14 @@
 #include <numbers>
 
 #include "ModelChecks.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 
 using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 
 BRDFRoughWater sea(double wind, bool foam = true, double body = 0) {
   const auto grid = SpectralGrid::make({550.0});

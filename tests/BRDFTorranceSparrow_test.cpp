@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "DrawnDirections.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
 #include "malus/surface/DHRTorranceSparrow.hpp"
@@ -23,7 +24,6 @@ namespace {
 using Complex = std::complex<double>;
 using Matrix = std::array<double, 16>;
 constexpr double pi = std::numbers::pi;
-constexpr double degree = pi / 180;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double false_alarm = 1e-6;  // of one chi-squared test; the suite makes fewer than ten
 

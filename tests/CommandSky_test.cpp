@@ -12,6 +12,7 @@
 #include "malus/air/Sky.hpp"
 #include "malus/air/Sun.hpp"
 #include "malus/air/TableSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;
@@ -207,7 +208,6 @@ TEST(CommandSkyIdentity, TheDomeIsASky) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const TableSky sky(Table::read(scratch / "sky.csv"), SpectralGrid::make({450.0}));
     CDSpectralVector<CDStokesVector> out(sky.grid());
-    const double degree = std::numbers::pi / 180;
     sky.radiance(compassDirection(60 * degree, 40 * degree), out);
     const Table one =
         tableOf(malusIn(scratch.path,

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 
 using namespace malus;
@@ -20,7 +21,6 @@ using std::numbers::pi;
 using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
 namespace {
-constexpr double degree = pi / 180;
 const DHRTorranceSparrow dhr;
 
 // Mean over psi of max(0, 1 + a cos(psi) - from).

@@ -9,6 +9,7 @@
 
 #include "ModelChecks.hpp"
 #include "Worlds.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/light/CDSpectralUnits.hpp"
 #include "malus/render/Radiometry.hpp"
@@ -26,7 +27,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 constexpr TorranceSparrowOptions bare{Shadowing::none, DiffuseTerm::none};
 
 std::shared_ptr<const CDBRDFModel> lambert(double reflectance) {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 
 using namespace malus;
@@ -17,8 +18,6 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 namespace {
-constexpr double degree = pi / 180;
-
 struct Amplitudes {
   Complex rs, rp;
 };

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "Worlds.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/ImportanceSampling.hpp"
 #include "malus/render/SamplingTrial.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
@@ -17,7 +18,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 World plate(const Model& model) { return worldOf({floorOf(model)}, uniformSky(1)); }
 
 // As bright everywhere as the uniform sky, without saying so: sampling by the sky's density has its turn.

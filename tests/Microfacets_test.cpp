@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ChiSquared.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/surface/Fresnel.hpp"
 
 using namespace malus;
@@ -25,8 +26,6 @@ using Vector = Eigen::Vector3d;
 using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
 namespace {
-constexpr double degree = pi / 180;
-
 CDMuellerMatrix rotation(double cos2, double sin2) {
   return CDMuellerMatrix({1, 0, 0, 0, 0, cos2, sin2, 0, 0, -sin2, cos2, 0, 0, 0, 0, 1});
 }

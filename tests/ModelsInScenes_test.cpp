@@ -7,6 +7,7 @@
 #include <string>
 
 #include "Program.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"
 
@@ -187,7 +188,7 @@ TEST(ModelsInScenesInvariant, AMeasuredSurfaceLooksLikeItsModel) {
 // reflectance for n = 1.5 at 50 degrees; the half vector of a slope of 1e-6 has one digit in single precision, and the
 // 400 rays of the importance sampling make a per cent of it.
 TEST(ModelsInScenesPublished, ASmoothCoatingIsAMirror) {
-  const double degree = std::numbers::pi / 180, c = std::cos(50 * degree),
+  const double c = std::cos(50 * degree),
                t = std::sqrt(1 - std::pow(std::sin(50 * degree) / 1.5, 2));
   const double rs = (c - 1.5 * t) / (c + 1.5 * t), rp = (1.5 * c - t) / (1.5 * c + t);
   const double reflectance = (rs * rs + rp * rp) / 2;

@@ -7,13 +7,14 @@
 #include <numbers>
 
 #include "malus/air/RayleighSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Radiometry.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 const CDVector up{0, 0, 1};
 const SpectralGridPtr one_band = SpectralGrid::make({450.0});
 

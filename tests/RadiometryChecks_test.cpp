@@ -10,6 +10,7 @@
 
 #include "Program.hpp"
 #include "Worlds.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Random.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/render/Sensor.hpp"
@@ -20,7 +21,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 Model copper(double sigma, DiffuseTerm diffuse) { return facets(0.405, 2.95, sigma, diffuse); }
 // A metal whose index is purely imaginary reflects everything at any angle.
 Model lossless(double sigma) { return facets(0, 2.95, sigma, DiffuseTerm::thesis); }

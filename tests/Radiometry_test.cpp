@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "malus/air/RayleighSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
 #include "malus/render/HemisphereRays.hpp"
@@ -18,7 +19,7 @@
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 const SpectralGridPtr one_band = SpectralGrid::make({CDSpectralLocation(550.0)});
 
 struct Plate {  // a square in the plane z = 0 of its own axes, turned and moved by `place`

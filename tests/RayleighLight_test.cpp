@@ -10,13 +10,14 @@
 #include <string>
 
 #include "malus/air/Sky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/CDVector.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 using Azimuth = RayleighLight::Azimuth;
 
 struct Printed {

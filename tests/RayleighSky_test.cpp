@@ -11,10 +11,12 @@
 #include <random>
 #include <vector>
 
+#include "malus/base/Angles.hpp"
+
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 const CDVector up{0, 0, 1};
 using Spectrum = CDSpectralVector<CDStokesVector>;
 using Azimuth = RayleighLight::Azimuth;

@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "malus/base/Angles.hpp"
 #include "malus/base/CDVector.hpp"
 #include "malus/light/CDSpectralVector.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -17,7 +18,7 @@
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 
 struct Drawn3 {
   double theta_i, theta_r, phi;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Worlds.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Sensor.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -15,7 +16,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 constexpr std::size_t side = 24;  // pixels of a picture
 constexpr double height_m =
     200;  // of the camera, far away: the three sensors see nearly the same

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Table.hpp"
 
@@ -208,7 +209,7 @@ TEST(ScattererInvariant, EveryConstantIsBounded) {
 // A dip between the degrees is found as well: a quarter of a degree wide at 90.5 degrees, in a phase function of mean one.
 TEST(ScattererInvariant, ADipBetweenTheDegreesIsFound) {
   const auto refused = [](double depth) {
-    constexpr double width_deg = 0.25, at_deg = 90.5, degree = std::numbers::pi / 180;
+    constexpr double width_deg = 0.25, at_deg = 90.5;
     const double mean = depth * width_deg * degree * std::sqrt(std::numbers::pi) / 2;
     try {
       Scatterer(

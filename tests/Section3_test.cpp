@@ -9,6 +9,7 @@
 #include <set>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/thesis/Bench.hpp"
 #include "malus/thesis/Section3Matrices.hpp"
 
@@ -16,7 +17,6 @@ using namespace malus;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-constexpr double degree = pi / 180;
 constexpr double rounding = 1e-13;  // a few dozen operations on numbers of order one
 
 using Complex = std::complex<double>;

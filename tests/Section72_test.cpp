@@ -8,12 +8,11 @@
 #include <numbers>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
-
 double drawn(double low, double high) {
   return low + (high - low) * (*rc::gen::inRange(0, 1000001)) * 1e-6;
 }

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
 constexpr CopperBench perfect{0, 0, 0, 0, 0, 20};
 
 /// Hagemann's copper at 650 nm, interpolated by hand: n = 0.272 - 0.9233 * 0.058, k = 3.24 + 0.9233 * 0.43.

@@ -7,14 +7,13 @@
 #include <string>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
-
 /// Where the axis of a frame's camera meets the height of a point, from that point.
 double missOf(const Scene& scene, std::size_t frame, const CDVector& point) {
   const Pose pose = scene.platform.at(frame);

@@ -3,19 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <string>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
-namespace {
-constexpr double degree = std::numbers::pi / 180;
-}
+namespace {}
 
 TEST(Section77Identity, TheSceneFileHasTheSunAndTheBandsOfTheThesis) {
   const Scene scene = chunkyScene("chunky-bar-sky", 16);

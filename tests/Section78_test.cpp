@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Scene.hpp"
 #include "malus/thesis/Pictures.hpp"
 
 using namespace malus;
 
-namespace {
-constexpr double degree = std::numbers::pi / 180;
-}
+namespace {}
 
 TEST(Section78Identity, TwelveHoursAnHourApart) {
   const std::vector<HourOfDay> day = rochesterDay();

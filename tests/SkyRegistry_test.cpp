@@ -6,11 +6,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
 
 #include "Program.hpp"
 #include "malus/air/Sky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/files/SceneReader.hpp"
 #include "malus/files/SceneSchema.hpp"
@@ -19,8 +19,6 @@ using namespace malus;
 using nlohmann::json;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
-
 // A camera over a plate, under this sky, with the sun in the north.
 json sceneUnder(const json& sky) {
   return {

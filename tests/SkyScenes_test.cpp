@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "Program.hpp"
 #include "malus/air/RayleighSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Table.hpp"
 #include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"
@@ -17,8 +17,6 @@ using namespace malus;
 using nlohmann::json;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
-
 // A level mirror (a metal that reflects 1 - 4e-8, with facets tilted by half a hundredth), seen by one pixel from
 // `view_deg` off the vertical, at the compass azimuth `azimuth_deg`.
 json mirrorScene(double view_deg, double azimuth_deg, const json& sky) {

@@ -11,13 +11,14 @@
 
 #include "malus/air/RayleighSky.hpp"
 #include "malus/air/TableSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 const auto grid = SpectralGrid::make({500.0});
 const double sun_zenith_deg = 50, sun_azimuth_deg = 212;
 

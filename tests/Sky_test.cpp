@@ -11,12 +11,13 @@
 
 #include "malus/air/Sun.hpp"
 #include "malus/air/TableSky.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/base/Table.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 const CDVector up{0, 0, 1};
 
 using Spectrum = CDSpectralVector<CDStokesVector>;

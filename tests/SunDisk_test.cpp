@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "Worlds.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Sensor.hpp"
 #include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFGlossyCoating.hpp"
@@ -18,7 +19,7 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double pi = std::numbers::pi;
 constexpr double alpha = solar_half_angle_rad;
 RadiometryOptions rays(Sampling sampling, std::vector<int> counts) {
   RadiometryOptions options;

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "Scratch.hpp"
+#include "malus/base/Angles.hpp"
 
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
 const InputPlace nowhere{"test", 0, "time"};
 Moment at(const char* time) { return readMoment(time, nowhere); }
 bool near(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }

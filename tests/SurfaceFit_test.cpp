@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
@@ -17,8 +18,6 @@
 using namespace malus;
 
 namespace {
-constexpr double degree = std::numbers::pi / 180;
-
 /// What a laboratory sees of a surface: fs and fp about the mirror direction, and DHR. The truth is
 /// the class itself with its own diffuse term, not the fit's prediction.
 std::vector<FitSample> laboratory(const BRDFTorranceSparrow& truth, double relative) {

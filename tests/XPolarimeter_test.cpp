@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "Items.hpp"
+#include "malus/base/Angles.hpp"
 #include "malus/render/Polarimeter.hpp"
 
 using namespace malus;
@@ -35,7 +35,6 @@ TEST(XPolarimeterIdentity, TheNoiseOfS2IsAboutRootThreeTimesThatOfS1) {
 }
 
 TEST(XPolarimeterIdentity, NegativeControlAFilterThatIsTurnedIsSeen) {
-  const double degree = std::numbers::pi / 180;
   const auto cameras = [&](double second_deg) {
     return Polarimeter(camerasBehind({linearPolarizer(0), linearPolarizer(second_deg * degree),
                                       linearPolarizer(90 * degree), circularPolarizer(1)}),
