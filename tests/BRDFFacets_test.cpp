@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "malus/base/Error.hpp"
 
@@ -21,9 +22,10 @@ class Twin : public BRDFFacets {
 
  protected:
   void weigh(const BRDFGeometry& g, const FacetGeometry& facet, std::size_t first,
-             std::size_t count, double* facets, double* diffuse) const override {
-    EXPECT_LE(first + count, bands());
-    for (std::size_t j = 0; j < count; ++j) {
+             std::span<double> facets, std::span<double> diffuse) const override {
+    EXPECT_EQ(facets.size(), diffuse.size());
+    EXPECT_LE(first + facets.size(), bands());
+    for (std::size_t j = 0; j < facets.size(); ++j) {
       const double grow = 1 + slope_ * static_cast<double>(first + j);
       facets[j] = grow * facetFactor(Shadowing::vGroove, g, facet, sigma_);
       diffuse[j] = 0.01 * g.cos_r * grow;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "malus/base/Error.hpp"
@@ -28,9 +29,9 @@ double expected(const BRDFGeometry& geometry, std::size_t band) {
 struct Numbered final : BRDFUnpolarized {
   explicit Numbered(std::size_t bands) : BRDFUnpolarized(gridOf(bands)) {}
   std::string_view name() const override { return "numbered"; }
-  void fill(const BRDFGeometry& geometry, std::size_t begin, std::size_t count,
-            double* f00) const override {
-    for (std::size_t j = 0; j < count; ++j) f00[j] = expected(geometry, begin + j);
+  void fill(const BRDFGeometry& geometry, std::size_t begin,
+            std::span<double> f00) const override {
+    for (std::size_t j = 0; j < f00.size(); ++j) f00[j] = expected(geometry, begin + j);
   }
 };
 

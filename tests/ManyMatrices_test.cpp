@@ -8,9 +8,12 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
+#include "malus/base/Error.hpp"
 #include "malus/base/Random.hpp"
+#include "malus/surface/BRDFDiffuse.hpp"
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 #include "malus/surface/ModelRegistry.hpp"
 
@@ -47,7 +50,7 @@ std::vector<double> inBlocks(const CDBRDFModel& model, const std::vector<BRDFGeo
       block.cos_r[j] = g.cos_r, block.sin_r[j] = g.sin_r;
       block.cos_phi[j] = g.cos_phi, block.sin_phi[j] = g.sin_phi;
     }
-    model.evaluateMany(block, &out[begin * each]);
+    model.evaluateMany(block, std::span(out).subspan(begin * each, block.count * each));
   }
   return out;
 }
@@ -100,7 +103,25 @@ TEST(ManyMatricesIdentity, BlocksOfEverySizeGiveTheSame) {
   for (std::size_t size = 1; size <= BRDFGeometries::most; ++size)
     EXPECT_EQ(differences(inBlocks(copper, all, size), expected), 0u) << size;
   BRDFGeometries none;
-  copper.evaluateMany(none, nullptr);  // nothing to write, and nowhere
+  copper.evaluateMany(none, {});  // nothing to write, and nowhere
+}
+
+TEST(ManyMatricesIdentity, TheRoomIsThatOfTheMatrices) {
+  const BRDFTorranceSparrow fast(0.405, 2.950, 0.2);
+  const BRDFDiffuse plain({SpectralGrid::make({500.0, 600.0}), 0.5});
+  BRDFGeometries three;
+  three.count = 3;
+  for (std::size_t j = 0; j < 3; ++j) {
+    three.cos_i[j] = three.cos_r[j] = 1, three.cos_phi[j] = -1;
+    three.sin_i[j] = three.sin_r[j] = three.sin_phi[j] = 0;
+  }
+  for (const CDBRDFModel* model : {static_cast<const CDBRDFModel*>(&fast), &plain}) {
+    std::vector<double> out(3 * 16 * model->grid()->size() + 1);
+    const std::span<double> more(out), all = more.first(out.size() - 1);
+    EXPECT_NO_THROW(model->evaluateMany(three, all));
+    EXPECT_THROW(model->evaluateMany(three, more), MathError);
+    EXPECT_THROW(model->evaluateMany(three, all.first(all.size() - 1)), MathError);
+  }
 }
 
 // Metals and glasses, smooth and rough, with every diffuse term, with other kinds of shadowing, and without polarisation.

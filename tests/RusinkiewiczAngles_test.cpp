@@ -128,7 +128,7 @@ TEST(RusinkiewiczAnglesIdentity, FacetsAreBlocksInTheirOwnAxes) {
     // all bands at once: the same numbers in two bands
     std::array<double, 32> planes;
     for (int k = 0; k < 32; ++k) planes[k] = m.data()[k / 2];
-    turnOutOfFacetFrames(facetGeometry(g), planes.data(), 2);
+    turnOutOfFacetFrames(facetGeometry(g), planes);
     for (int k = 0; k < 32; ++k) EXPECT_NEAR(planes[k], f.data()[k / 2], 1e-14 * f.getScalar());
   }
   EXPECT_GT(macroscopic, 0.1);  // negative control
