@@ -619,7 +619,44 @@ class Parts(unittest.TestCase):
 
 
 class CheckTest(unittest.TestCase):
-    """Lengths of files and functions, over the chunks that they consist of."""
+    """Rules that one chapter alone cannot see: floors, circles, names; lengths over the chunks that they consist of."""
+
+    def said_of_chapters(self, chapters: dict[str, str]) -> list[str]:
+        """What the check says of chapters by floor and name, each with the code of one header."""
+        with tempfile.TemporaryDirectory() as directory:
+            for name, code in chapters.items():
+                path = os.path.join(directory, "nw", name + ".nw")
+                os.makedirs(os.path.dirname(path), exist_ok=True)
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(f"\\chapter{{{name}}}\n\n<<{name}.hpp>>=\n{code}@\n")
+            run = subprocess.run([os.path.join(WEAVER, "check.py"), *(f"nw/{name}.nw" for name in chapters)],
+                                 cwd=directory, capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, int(bool(run.stderr)))
+            return run.stderr.splitlines()
+
+    def test_an_include_does_not_climb(self) -> None:
+        includes = '#pragma once\n#include "malus/{}.hpp"\n'
+        falls = {"base/Low": "struct Low {};\n", "light/High": includes.format("base/Low")}
+        self.assertEqual(self.said_of_chapters(falls), [])
+        climbs = {"base/Low": includes.format("light/High"), "light/High": "struct High {};\n"}
+        self.assertEqual(self.said_of_chapters(climbs), ["nw/base/Low.nw:5: base must not include light: an include never climbs"])
+        # python stands on files, beside app
+        self.assertEqual(self.said_of_chapters({"python/Me": includes.format("files/Cube"), "files/Cube": ""}), [])
+        self.assertEqual(self.said_of_chapters({"python/Me": includes.format("app/Main"), "app/Main": ""}),
+                         ["nw/python/Me.nw:5: python must not include app: an include never climbs"])
+
+    def test_includes_make_no_circle(self) -> None:
+        def includes(name: str) -> str:
+            return f'#include "malus/base/{name}.hpp"\n'
+        line = {"base/A": includes("B"), "base/B": includes("C"), "base/C": "struct C {};\n"}
+        self.assertEqual(self.said_of_chapters(line), [])
+        self.assertEqual(self.said_of_chapters(line | {"base/C": includes("A")}),
+                         ["nw/base/A.nw: a circle of includes: base/A > base/B > base/C > base/A"])
+
+    def test_cd_is_for_the_thesis(self) -> None:
+        self.assertEqual(self.said_of_chapters({"base/Vector": "struct CDVector {};\n"}), [])
+        self.assertEqual(self.said_of_chapters({"base/Vector": "struct Vector {\n  CDNew n;\n};\n"}),
+                         ["nw/base/Vector.nw:5: CDNew is no name of the thesis; leave out the CD"])
 
     def said_of(self, lines_of_a_function: int, functions: int) -> str:
         """What the check says of a chapter with so many functions, the middle of each in a chunk of its own."""
