@@ -94,4 +94,24 @@ TEST(InstallInvariant, ItIsAFolderOfAnotherProject) {
                 "cmake -S " + (scratch / "none").string() + " -B " + (scratch / "c").string()),
             0);
 }
+
+/// Whether a library takes a function or stream from outside that only a program may use.
+bool usesWhatIsTheProgramsOwn(const Scratch& scratch, const std::string& library) {
+  EXPECT_EQ(run(scratch, "nm -D " MALUS_BUILD "/lib/" + library + ".so"), 0) << library;
+  return run(scratch,
+             "nm -D " MALUS_BUILD "/lib/" + library +
+                 ".so | grep -E ' U ((secure_)?getenv|(_|quick_)?exit|abort|stderr|stdout|"
+                 "_ZSt4(cerr|cout|clog)|v?f?printf|f?puts|putchar|perror)(@|$)'") == 0;
+}
+
+// A library neither prints nor ends the program that has called it, and the environment is the program's.
+TEST(InstallInvariant, LibrariesLeaveTheProgramAlone) {
+  const Scratch scratch;
+  if (run(scratch, "nm " MALUS_BUILD "/lib/libmalus.so | grep -q __gcov_dump") == 0)
+    GTEST_SKIP() << "what counts lines writes files of its own";
+  EXPECT_FALSE(usesWhatIsTheProgramsOwn(scratch, "libmalus"));
+  EXPECT_FALSE(usesWhatIsTheProgramsOwn(scratch, "libmalus_scenes"));
+  EXPECT_TRUE(
+      usesWhatIsTheProgramsOwn(scratch, "libmalus_app"));  // control: this one is a program's
+}
 }  // namespace
