@@ -110,13 +110,14 @@ bool among(const Words& words, const std::string& alternatives) {
 }
 /// A number from all of a parameter's range: an end of it, or drawn evenly, or over all orders of magnitude.
 double drawn(const Parameter& parameter, Random& random) {
-  const double low = parameter.open ? parameter.high * 1e-9 : parameter.low;
+  const auto& [least_of_all, high, open] = parameter.limits;
+  const double low = open ? high * 1e-9 : least_of_all;
   const double which = random.uniform(), u = random.uniform();
   if (which < 1.0 / 6) return low;
-  if (which < 1.0 / 3) return parameter.high;
-  if (which < 0.6) return low + (parameter.high - low) * u;
-  const double least = std::max(low, parameter.high * 1e-9);
-  return std::min(parameter.high, least * std::pow(parameter.high / least, u));
+  if (which < 1.0 / 3) return high;
+  if (which < 0.6) return low + (high - low) * u;
+  const double least = std::max(low, high * 1e-9);
+  return std::min(high, least * std::pow(high / least, u));
 }
 struct Found {  // the worst of all draws
   double dop = 0, dop_back = 0, exchange = 0, dhr = 0;

@@ -9,9 +9,9 @@ namespace {
 const Parameters& someParameters() {
   using namespace parameter;
   static const Parameters all{
-      spectrum(number("share", "", "what is kept", 0, 1)),
-      number("width_deg", "deg", "a width", 0, 90, true, "5"),
-      optional(number("depth", "", "a depth", 0, 10)),
+      spectrum(number("share", "", "what is kept", {0, 1})),
+      number("width_deg", "deg", "a width", {0, 90, true}, "5"),
+      optional(number("depth", "", "a depth", {0, 10})),
       optional(choice("place", "where", {"below", "above"}, "")),
       formerly("colour", choice("kind", "which", {"red", "blue"}, "red"))};
   return all;
