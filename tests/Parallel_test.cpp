@@ -156,6 +156,66 @@ TEST(ParallelIdentity, InnerWorkWithinOuterWork) {
       EXPECT_EQ(squares[i][k], (i + k) * (i + k)) << i << " " << k;
 }
 
+// A watched work of many threads ends with what look() has thrown, though all its bodies are inner works without an end.
+TEST(ParallelInvariant, AWatchedWorkEndsWhereverItIs) {
+  for (const int threads : {1, 3}) {
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> elsewhere = false;
+    int looks = 0;
+    const auto look = [&] {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      if (++looks == 3) throw std::runtime_error("enough");
+    };
+    const auto endless = [&](std::size_t) {
+      for (;;) std::this_thread::yield(), mayStop();
+    };
+    const auto work = [&] {
+      parallelFor(
+          3, [&](std::size_t) { parallelFor(2, endless); }, threads);
+    };
+    try {
+      watched(look, work);
+      ADD_FAILURE() << "the work ended by itself";
+    } catch (const std::runtime_error& e) {
+      EXPECT_STREQ(e.what(), "enough");
+    }
+    EXPECT_EQ(looks, 3);
+  }
+}
+
+// Who looks may work in parallel and be watched himself; the watch that was left is the former one again.
+TEST(ParallelInvariant, WhoLooksMayWork) {
+  int looks = 0, inner_looks = 0;
+  const auto look = [&] {
+    const int before = looks;
+    watched([&] { ++inner_looks; },
+            [] {
+              parallelFor(4, [](std::size_t) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(150));
+                mayStop();
+              });
+            });
+    EXPECT_EQ(looks, before);
+    if (++looks == 2) throw std::runtime_error("enough");
+  };
+  const auto body = [](std::size_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  };
+  EXPECT_THROW(watched(look, [&] { parallelFor(100000, body); }), std::runtime_error);
+  EXPECT_EQ(looks, 2);
+  EXPECT_GE(inner_looks, 1);
+  looks = 0;
+  parallelFor(20, body);  // nobody watches any more
+  EXPECT_EQ(looks, 0);
+}
+
+TEST(ParallelInvariant, AWatchedWorkMayEndByItself) {
+  int sum = 0;
+  watched([] { throw std::runtime_error("too early"); }, [&] { mayStop(), ++sum; });
+  EXPECT_EQ(sum, 1);
+  EXPECT_THROW(watched([] {}, [] { throw std::out_of_range("its own"); }), std::out_of_range);
+}
+
 #ifdef __SANITIZE_THREAD__
 // Negative control of the marks and of tests/tsan.supp: a race between two bodies must be reported.
 // The meeting is there to have two threads; it orders what is before and not what is after.

@@ -2,7 +2,11 @@
 import csv
 import io
 import os
+import signal
 import subprocess
+import threading
+import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,6 +45,24 @@ def complaint(*words: object) -> str:
 def sentence(message: str) -> str:
     """A message without the place before it, which is another in Python."""
     return message.split(": ", 2)[-1]
+
+
+def seconds_after_ctrl_c(work: Callable[[], object], after_s: float = 0.3) -> float:
+    """How long work goes on after a Ctrl-C, which comes from outside as it does from a terminal."""
+    times = [0.0]
+
+    def press() -> None:
+        times[0] = time.monotonic()
+        os.kill(os.getpid(), signal.SIGINT)
+    finger = threading.Timer(after_s, press)
+    finger.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+        return time.monotonic() - times[0]
+    finally:
+        finger.cancel()
+        finger.join()
 
 
 @pytest.fixture

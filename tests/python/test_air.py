@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import complaint, numbers, run_malus
+from conftest import complaint, numbers, run_malus, seconds_after_ctrl_c
 
 import malus
 
@@ -150,3 +150,14 @@ def test_refusals_of_spheres(words: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError) as refused:
         malus.mie(**words)
     assert str(refused.value) == message
+
+
+@pytest.mark.parametrize("work", [
+    lambda: malus.sky(wavelength_nm=np.linspace(400, 700, 500), sun_zenith_deg=60, dome_step_deg=2),  # minutes
+    lambda: malus.sky(wavelength_nm=500, sun_zenith_deg=60, dome_step_deg=0.1),
+    lambda: [malus.mie(1.5, 0.01, wavelength_nm=550, effective_radius_um=5, effective_variance=0.3, largest_radius_um=39) for _ in range(9)],
+    lambda: malus.sun(np.zeros(30_000_000), 0, "2001-06-10T17:08:00Z"),
+])
+def test_ctrl_c_stops_a_long_call(work: Any) -> None:
+    # a second is what a user waits; the rest is for a busy machine
+    assert seconds_after_ctrl_c(work) < 4

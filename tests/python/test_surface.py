@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Array, complaint, numbers, run_malus
+from conftest import Array, complaint, numbers, run_malus, seconds_after_ctrl_c
 
 import malus
 
@@ -230,3 +230,20 @@ def test_models_describe_themselves() -> None:
     assert "v-groove" in malus.models()["torrance-sparrow"].parameters["shadowing"].words
     listed = {line.split()[0] for line in run_malus("brdf", "--list").split("\n\n")[0].splitlines()}
     assert set(malus.models()) == listed
+
+
+NM = np.linspace(400, 700, 500)
+STEEP = np.linspace(0, 89, 100_000)
+
+
+@pytest.mark.parametrize("work", [
+    lambda: malus.emissivity("torrance-sparrow", STEEP, **COPPER),  # minutes
+    lambda: malus.dhr("torrance-sparrow", STEEP, **COPPER),
+    lambda: malus.emissivity("torrance-sparrow", STEEP, NM[:, None], **COPPER),
+    lambda: malus.dhr("layered-paint", 30, NM, **malus.models()["layered-paint"].example),  # 500 tables of scattered light
+    lambda: [malus.brdf("torrance-sparrow", STEEP[:, None], 40, np.arange(100), **COPPER) for _ in range(99)],
+    lambda: [malus.brdf("torrance-sparrow", STEEP[:, None], 40, 180, NM[:40], **COPPER) for _ in range(99)],
+])
+def test_ctrl_c_stops_a_long_call(work: Any) -> None:
+    # a second is what a user waits; the rest is for a busy machine
+    assert seconds_after_ctrl_c(work) < 4
