@@ -8,8 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from . import _malus
+from . import _malus, checks
 from .surface import parameters_of
+
+
+ANGLE = "give the angle from the zenith, in degrees"
+SUNLIGHT = 'give "pi", "astm-e490" or a number'
 
 
 class SunPosition(NamedTuple):
@@ -52,7 +56,7 @@ def sun(latitude_deg: npt.ArrayLike, longitude_deg: npt.ArrayLike, time: Any) ->
     >>> malus.sun(43.16, -77.61, "2001-06-10T13:08:00-04:00").zenith_deg.round(2)
     20.11
     """
-    times = np.asarray(time) if not isinstance(time, datetime) else np.asarray(time, dtype=object)
+    times = checks.array("sun", "time", time) if not isinstance(time, datetime) else np.asarray(time, dtype=object)
     days = np.empty(times.shape)
     for index in np.ndindex(times.shape):
         days[index] = _julian_day(times[index])
@@ -119,26 +123,33 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
     if sun_zenith_deg is not None:
         if mu0 is not None:
             raise ValueError("malus.sky: sun_zenith_deg: stands beside mu0; give one of them")
-        mu0 = _cosine(float(sun_zenith_deg), "sun_zenith_deg")
+        mu0 = _cosine(checks.number("sky", "sun_zenith_deg", sun_zenith_deg, 0, 90, ANGLE, " deg"), "sun_zenith_deg")
     if zenith_deg is not None and mu is not None:
         raise ValueError("malus.sky: zenith_deg: stands beside mu; give one of them")
+    if mu0 is not None:
+        mu0 = checks.number("sky", "mu0", mu0, 0, 1, "give the cosine of the sun's zenith angle")
+    if tau_obs is not None:
+        tau_obs = checks.number("sky", "tau_obs", tau_obs, 0, np.inf, "give the optical depth over the observer")
+    checks.text("sky", "model", model, "give a name of malus.skies()")
+    checks.text("sky", "convention", convention, "give malus, natraj or iprt")
     if direction not in ("down", "up"):
         raise ValueError(f"malus.sky: direction = {direction}: is none of the words allowed here; known are: down, up")
-    steps = round(90 / dome_step_deg) if dome_step_deg > 0 else 0
-    if abs(steps * dome_step_deg - 90) > 1e-9:
-        raise ValueError(f"malus.sky: dome_step_deg = {dome_step_deg:g}: does not divide 90; give e.g. 5")
+    step = checks.number("sky", "dome_step_deg", dome_step_deg, 0.1, 90, "give e.g. 5")
+    steps = round(90 / step)
+    if abs(steps * step - 90) > 1e-9:
+        raise ValueError(f"malus.sky: dome_step_deg = {step:g}: does not divide 90; give e.g. 5")
     if mu is not None:
-        cosines = _axis(mu, "mu")
+        cosines = checks.axis("sky", "mu", mu)
         for one in cosines:
             if not 1e-9 <= one <= 1:
                 raise ValueError(f"malus.sky: mu = {one:g}: must be 1e-09 to 1; give cosine of the zenith angle of the line of sight")
         zenith = np.degrees(np.arccos(cosines))
     else:
-        zenith = np.append(np.arange(steps) * dome_step_deg, 90.0) if zenith_deg is None else _axis(zenith_deg, "zenith_deg")
+        zenith = np.append(np.arange(steps) * step, 90.0) if zenith_deg is None else checks.axis("sky", "zenith_deg", zenith_deg)
         cosines = np.array([_cosine(one, "zenith_deg") for one in zenith])
-    phi = np.arange(4 * steps) * dome_step_deg if phi_deg is None else _axis(phi_deg, "phi_deg")
-    nm = _axis(wavelength_nm, "wavelength_nm") if wavelength_nm is not None else np.empty(0)
-    words = irradiance if isinstance(irradiance, str) else repr(float(irradiance))
+    phi = np.arange(4 * steps) * step if phi_deg is None else checks.axis("sky", "phi_deg", phi_deg)
+    nm = checks.axis("sky", "wavelength_nm", wavelength_nm) if wavelength_nm is not None else np.empty(0)
+    words = irradiance if isinstance(irradiance, str) else repr(checks.number("sky", "irradiance", irradiance, 0, 1e9, SUNLIGHT))
     light = _malus.sky(model, nm.tolist(), mu0, cosines.tolist(), phi.tolist(), direction == "up", tau_obs, words, convention, parameters)
     first = "Q = ll - rr" if convention == "iprt" else "Q = rr - ll"
     frame = (f"{first}, l in the meridian plane, r horizontal; U = 2 Re lr*; V > 0: the field turns counter-clockwise for who looks at the "
@@ -160,15 +171,8 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
 
 def _cosine(zenith_deg: float, name: str) -> float:
     if not 0 <= zenith_deg <= 90:
-        raise ValueError(f"malus.sky: {name} = {zenith_deg:g} deg: must be 0 to 90; give the angle from the zenith, in degrees")
+        raise ValueError(f"malus.sky: {name} = {zenith_deg:g} deg: must be 0 to 90; {ANGLE}")
     return 0.0 if zenith_deg == 90 else math.cos(zenith_deg * math.pi / 180)
-
-
-def _axis(given: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
-    axis = np.asarray(given, dtype=float)
-    if axis.ndim > 1:
-        raise ValueError(f"malus.sky: {name}: has the shape {axis.shape}; give a number or an array with one axis")
-    return axis.reshape(-1)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from . import checks
 from .stokes import aolp, dolp
 
 if TYPE_CHECKING:
@@ -82,12 +83,13 @@ def _panel(axes: "Axes", picture: Array, title: str, scale: Any, top: float, sky
         bar.set_ticks([0, 45, 90, 135, 180])
 
 
-def _chosen(light: xr.DataArray, axis: str, index: int) -> xr.DataArray:
+def _chosen(light: xr.DataArray, axis: str, name: str, given: int) -> xr.DataArray:
     """One of an axis, counted from 0; the light itself if a selection has left only one."""
+    index = checks.whole("plot", name, given, -2**62, 2**62, "give the number of one, counted from 0")
     if axis not in light.dims:
         return light
     if not -light.sizes[axis] <= index < light.sizes[axis]:
-        raise ValueError(f"malus.plot: {axis} = {index}: is not there; they are counted from 0 to {light.sizes[axis] - 1}")
+        raise ValueError(f"malus.plot: {name} = {index}: is not there; they are counted from 0 to {light.sizes[axis] - 1}")
     return light.isel({axis: index})
 
 
@@ -136,9 +138,9 @@ class MalusAccessor:
         light = self._dataset.radiance
         sky = "zenith_deg" in light.dims
         bands = "wavelength_nm" if sky else "band"
-        light = _chosen(light, bands, light.sizes.get(bands, 0) // 2 if band is None else band)
+        light = _chosen(light, bands, "band", light.sizes.get(bands, 0) // 2 if band is None else band)
         if not sky:
-            light = _chosen(light, "frame", frame)
+            light = _chosen(light, "frame", "frame", frame)
         stokes = _fisheye(light) if sky else light.transpose("y", "x", "stokes").values
         if stokes.shape[-1] < 3:
             raise ValueError("malus.plot: the dataset lacks S1 or S2; it was measured without")

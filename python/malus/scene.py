@@ -2,24 +2,17 @@
 import json
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from . import _malus
+from . import _malus, checks
 
 Watcher = Callable[[float, str], object]
 PIXEL = {"x": {"long_name": "pixel in its row, from the left", "units": "1"},
          "y": {"long_name": "row, from the top", "units": "1"}}
-
-
-def _plain(value: Any) -> Any:
-    """What JSON does not know of NumPy and of paths."""
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return os.fspath(value)
 
 
 class _Bar:
@@ -126,14 +119,21 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
     KeyboardInterrupt
         After Ctrl-C, when the tiles in work are finished.
     """
-    bar = _Bar() if progress is True else None
+    wanted = checks.frames(frames)
+    folder = "" if base is None else checks.path("render", "base", base, "give the name of a directory")
+    if isinstance(scene, Mapping):
+        path, text = None, json.dumps(checks.scene(scene))
+    else:
+        path, text = checks.path("render", "scene", scene, "give the name of a scene file, or a dictionary"), ""
+        if not path:
+            raise ValueError("malus.render: scene: is empty; give the name of a scene file, or a dictionary")
+    if not (progress is None or isinstance(progress, bool | np.bool_) or callable(progress)):
+        raise checks.refusal("render", "progress", progress, "is neither True nor False nor a function",
+                             "give True for a bar, or a function of a fraction and a text")
+    bar = _Bar() if isinstance(progress, bool | np.bool_) and progress else None
     watcher = bar if bar else progress if callable(progress) else None
-    wanted = [] if frames is None else [int(frames)] if isinstance(frames, int | np.integer) else [int(one) for one in frames]
-    if frames is not None and not wanted:
-        raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
-    path, text = (None, json.dumps(scene, default=_plain)) if isinstance(scene, dict) else (os.fspath(scene), "")
     try:
-        return _dataset(_malus.render(path, text, os.fspath(base or ""), wanted, tile, seed, threads, watcher,
+        return _dataset(_malus.render(path, text, folder, wanted, tile, seed, threads, watcher,
                                       _word(batches), _word(until), _word(at_most)))
     finally:
         if bar:
@@ -206,9 +206,10 @@ def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.
     ValueError
         For a file that is no such cube, with its place; for cubes that are not frames of one picture.
     """
-    paths = [cube] if isinstance(cube, str | os.PathLike) else list(cube)
-    if not paths:
+    several: Iterable[Any] = cube if isinstance(cube, Iterable) and not isinstance(cube, str | bytes | os.PathLike) else [cube]
+    paths = [checks.path("open", "cube", path, "give the name of a cube, or of several") for path in several]
+    if not all(paths) or not paths:
         raise ValueError("malus.open: cube: names no cube; give one at least")
-    frames = [_of_cube(_malus.read_cube(os.fspath(path))) for path in paths]
-    _demand_frames([os.fspath(path) for path in paths], frames)
+    frames = [_of_cube(_malus.read_cube(path)) for path in paths]
+    _demand_frames(paths, frames)
     return frames[0] if len(frames) == 1 else xr.concat(frames, dim="frame", combine_attrs="drop_conflicts", join="exact")

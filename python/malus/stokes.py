@@ -2,7 +2,7 @@
 
 A Stokes vector is the last axis, (S0, S1, S2, S3); a Mueller matrix the last two. All axes before broadcast. An
 ``xarray.DataArray`` with a dimension ``stokes`` is taken as well and comes back as one. Arrays of 32-bit numbers are read as
-they are and give 32-bit answers; what is between is computed with 64 bits.
+they are and give 32-bit answers; what is between is computed with 64 bits. A hole stays one: what is computed from a NaN is NaN.
 """
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -11,15 +11,16 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from . import _malus
+from . import _malus, checks
 
 Bools = npt.NDArray[np.bool_]
 
 
-def _of_stokes(function: Callable[..., Any], stokes: Any, *more: Any, keeps: bool = False, **words: Any) -> Any:
+def _of_stokes(name: str, function: Callable[..., Any], stokes: Any, *more: Any, keeps: bool = False, **words: Any) -> Any:
     """The function of an array, or of the dimension "stokes" of a DataArray."""
     if not isinstance(stokes, xr.DataArray):
         return function(stokes, *more, **words)
+    checks.stokes_axis(name, stokes)
     return xr.apply_ufunc(function, stokes, *more, kwargs=words, input_core_dims=[["stokes"], *[[] for _ in more]],
                           output_core_dims=[["stokes"] if keeps else []])
 
@@ -43,7 +44,7 @@ def dop(stokes: Any) -> Any:
     array, shape (...)
         0 where there is no light, inf where S0 is 0 and the rest is not, NaN where S0 is negative.
     """
-    return _named(_of_stokes(_malus.dop, stokes), "DoP", "1", "degree of polarisation")
+    return _named(_of_stokes("dop", _malus.dop, stokes), "DoP", "1", "degree of polarisation")
 
 
 def dolp(stokes: Any) -> Any:
@@ -58,7 +59,7 @@ def dolp(stokes: Any) -> Any:
     array, shape (...)
         Special cases as for `dop`.
     """
-    return _named(_of_stokes(_malus.dolp, stokes), "DoLP", "1", "degree of linear polarisation")
+    return _named(_of_stokes("dolp", _malus.dolp, stokes), "DoLP", "1", "degree of linear polarisation")
 
 
 def docp(stokes: Any) -> Any:
@@ -73,7 +74,7 @@ def docp(stokes: Any) -> Any:
     array, shape (...)
         Special cases as for `dop`.
     """
-    return _named(_of_stokes(_malus.docp, stokes), "DoCP", "1", "degree of circular polarisation")
+    return _named(_of_stokes("docp", _malus.docp, stokes), "DoCP", "1", "degree of circular polarisation")
 
 
 def aolp(stokes: Any) -> Any:
@@ -88,7 +89,7 @@ def aolp(stokes: Any) -> Any:
     array, shape (...) [deg]
         Counter-clockwise from horizontal for who looks back at the source; 0 where nothing is linearly polarised.
     """
-    return _named(_of_stokes(_malus.aolp, stokes), "AoLP", "degree", "angle of linear polarisation")
+    return _named(_of_stokes("aolp", _malus.aolp, stokes), "AoLP", "degree", "angle of linear polarisation")
 
 
 def is_physical(stokes: Any, tolerance: float = 1e-12) -> Any:
@@ -104,7 +105,7 @@ def is_physical(stokes: Any, tolerance: float = 1e-12) -> Any:
     -------
     array of bool, shape (...)
     """
-    return _of_stokes(_malus.is_physical, stokes, tolerance=tolerance)
+    return _of_stokes("is_physical", _malus.is_physical, stokes, tolerance=checks.tolerance("is_physical", tolerance))
 
 
 def rotate(stokes: Any, angle_deg: npt.ArrayLike) -> Any:
@@ -119,7 +120,7 @@ def rotate(stokes: Any, angle_deg: npt.ArrayLike) -> Any:
     -------
     array, shape (..., 4)
     """
-    return _of_stokes(_malus.rotate, stokes, angle_deg, keeps=True)
+    return _of_stokes("rotate", _malus.rotate, stokes, angle_deg, keeps=True)
 
 
 def rotate_mueller(mueller: npt.ArrayLike, angle_deg: npt.ArrayLike) -> npt.NDArray[Any]:
@@ -150,7 +151,7 @@ def apply(mueller: npt.ArrayLike, stokes: Any) -> Any:
     -------
     array, shape (..., 4)
     """
-    return _of_stokes(lambda s: _malus.apply(mueller, s), stokes, keeps=True)
+    return _of_stokes("apply", lambda s: _malus.apply(mueller, s), stokes, keeps=True)
 
 
 def product(*muellers: npt.ArrayLike) -> npt.NDArray[Any]:
@@ -167,8 +168,9 @@ def product(*muellers: npt.ArrayLike) -> npt.NDArray[Any]:
     """
     if not muellers:
         raise ValueError("malus.product: needs a Mueller matrix; give one or more")
-    result = np.asarray(muellers[0])
-    for right in muellers[1:]:
+    factors = [checks.elements("product", f"muellers[{i}]", one, (4, 4)) for i, one in enumerate(muellers)]
+    result = factors[0]
+    for right in factors[1:]:
         result = _malus.product(result, right)
     return result
 
@@ -180,13 +182,13 @@ def is_realizable(mueller: npt.ArrayLike, tolerance: float = 1e-12) -> Bools:
     ----------
     mueller : array_like, shape (..., 4, 4)
     tolerance : float
-        The smallest eigenvalue is at least -tolerance m00.
+        The smallest eigenvalue is at least -tolerance m00; numbers that were rounded to 32 bits need about 2.4e-7.
 
     Returns
     -------
     array of bool, shape (...)
     """
-    return _malus.is_realizable(mueller, tolerance)
+    return _malus.is_realizable(mueller, checks.tolerance("is_realizable", tolerance))
 
 
 def coherency_eigenvalues(mueller: npt.ArrayLike) -> npt.NDArray[Any]:
@@ -225,11 +227,8 @@ def lu_chipman(mueller: npt.ArrayLike) -> LuChipman:
     Returns
     -------
     LuChipman
-
-    Raises
-    ------
-    ValueError
-        For a matrix that is not finite, has m00 <= 0 without being zero, or a diattenuation above 1.
+        NaN for a matrix that cannot be taken apart: not finite, m00 <= 0 (but for the zero matrix, which passes nothing), or a
+        diattenuation above 1.
     """
     return LuChipman(*_malus.lu_chipman(mueller))
 

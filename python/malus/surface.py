@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _malus
+from . import _malus, checks
 
 Floats = npt.NDArray[np.float64]
+KNOWN = "give a name of malus.models()"
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def brdf(model: str, theta_i_deg: npt.ArrayLike, theta_r_deg: npt.ArrayLike, phi
     theta_i_deg, theta_r_deg : array_like
         Zenith angles of source and viewer, from the surface normal, 0 to 90 [deg]. A NaN gives NaN.
     phi_deg : array_like
-        Azimuth from source to viewer, counter-clockwise from above; 180 is specular [deg].
+        Azimuth from source to viewer, counter-clockwise from above; 180 is specular [deg]. A NaN gives NaN.
     wavelength_nm : array_like
         Wavelength in vacuum [nm].
     **parameters
@@ -134,7 +135,7 @@ def brdf(model: str, theta_i_deg: npt.ArrayLike, theta_r_deg: npt.ArrayLike, phi
     >>> malus.brdf("torrance-sparrow", 30, np.arange(90.)[:, None], 180, nm, n=1.5, k=0, sigma=0.1).shape
     (90, 100, 4, 4)
     """
-    return _malus.brdf(model, theta_i_deg, theta_r_deg, phi_deg, wavelength_nm, parameters)
+    return _malus.brdf(checks.text("brdf", "model", model, KNOWN), theta_i_deg, theta_r_deg, phi_deg, wavelength_nm, parameters)
 
 
 def dhr(model: str, theta_i_deg: npt.ArrayLike, wavelength_nm: npt.ArrayLike = 550.0, **parameters: Any) -> Floats:
@@ -156,7 +157,7 @@ def dhr(model: str, theta_i_deg: npt.ArrayLike, wavelength_nm: npt.ArrayLike = 5
     numpy.ndarray, float64, shape (...)
         A part of one; a float for scalars.
     """
-    return _malus.dhr(model, theta_i_deg, wavelength_nm, parameters)
+    return _malus.dhr(checks.text("dhr", "model", model, KNOWN), theta_i_deg, wavelength_nm, parameters)
 
 
 def emissivity(model: str, theta_r_deg: npt.ArrayLike, wavelength_nm: npt.ArrayLike = 550.0, **parameters: Any) -> Floats:
@@ -178,4 +179,4 @@ def emissivity(model: str, theta_r_deg: npt.ArrayLike, wavelength_nm: npt.ArrayL
     numpy.ndarray, float64, shape (..., 4)
         Emissivity (e0, e1, e2, e3), with e0 + e1 that of s and e0 - e1 that of p.
     """
-    return _malus.emissivity(model, theta_r_deg, wavelength_nm, parameters)
+    return _malus.emissivity(checks.text("emissivity", "model", model, KNOWN), theta_r_deg, wavelength_nm, parameters)

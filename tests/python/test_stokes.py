@@ -92,6 +92,15 @@ def test_an_element_taken_apart() -> None:
     assert both.retarder.shape == (2, 4, 4) and np.isclose(both.depolarization_power[1], 0.5, rtol=0, atol=1e-12)
 
 
+def test_a_dead_pixel_is_a_hole_and_spoils_no_other() -> None:
+    good, dead = malus.retarder(90, 20), np.full((4, 4), np.nan)
+    beyond = np.eye(4) + 2 * np.eye(4, k=1)  # a diattenuation of 2
+    parts = malus.lu_chipman(np.stack([good, dead, -good, beyond, np.zeros((4, 4)), good]))
+    for part, alone in zip(parts, malus.lu_chipman(good)):
+        assert np.isnan(part[1:4]).all() and np.isfinite(part[4]).all()
+        assert np.array_equal(part[0], alone) and np.array_equal(part[5], alone)
+
+
 def test_what_can_exist() -> None:
     mirror, transposer = np.diag([1.0, 1, -1, -1]), np.diag([1.0, 1, 1, -1])
     assert malus.is_realizable(np.stack([mirror, transposer, np.eye(4)])).tolist() == [True, False, True]
