@@ -200,6 +200,7 @@ def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.
     -------
     xarray.Dataset
         Of a Stokes cube ``radiance`` (frame, y, x, band, stokes), float32, as from `render`; of another cube a variable for each channel.
+        ``malus.open(cube).to_zarr("cube.zarr")`` makes a Zarr of it, where zarr is installed.
 
     Raises
     ------
