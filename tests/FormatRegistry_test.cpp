@@ -204,9 +204,10 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
             "command line: --write = pictues: is not an output of malus; did you mean "
             "pictures? known "
             "are: cube, error, exr, netcdf, pictures, truth\n");
-  EXPECT_EQ(malusIn(scratch.path, "render s.json --out o --write cube,zarr").err,
-            "command line: --write = zarr: is not an output of malus; write netcdf, and turn it "
-            "into Zarr from Python with malus.open(\"NAME.nc\").to_zarr(\"NAME.zarr\")\n");
+  EXPECT_EQ(
+      malusIn(scratch.path, "render s.json --out o --write cube,zarr").err,
+      "command line: --write = zarr: is not an output of malus; write netcdf, and turn it "
+      "into Zarr from Python with malus.open(\"NAME.nc\").to_zarr(\"NAME.zarr\")\n");
   EXPECT_EQ(malusIn(scratch.path, "render s.json --out o --formats exr").err,
             "command line: --formats: is now called --write; write --write\n");
   const Outcome twice = malusIn(scratch.path, "render s.json --out o --write exr,exr");

@@ -145,13 +145,13 @@ def _key(name: object, at: str) -> str:
     raise ValueError(f"scene: {at + ': ' if at else ''}the key {' '.join(_BRIEF.repr(name).split())} is not a text; give keys as texts")
 
 
-def frames(wanted: int | Iterable[int] | None) -> list[int]:
+def frames(wanted: Any) -> list[int]:
     """Numbers of frames, each once; none for all."""
     if wanted is None:
         return []
     remedy = "give frames of the scene, which are counted from 0"
-    single = np.ndim(wanted) == 0 and (isinstance(wanted, str) or not isinstance(wanted, Iterable) or isinstance(wanted, np.ndarray))  # type: ignore[arg-type]
-    numbers = [whole("render", "frames", one, -2**62, 2**62, remedy) for one in ([wanted] if single else wanted)]  # type: ignore[union-attr]
+    several = isinstance(wanted, Iterable) and not isinstance(wanted, str) and not (isinstance(wanted, np.ndarray) and wanted.ndim == 0)
+    numbers = [whole("render", "frames", one, -2**62, 2**62, remedy) for one in (wanted if several else [wanted])]
     if not numbers:
         raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
     for i, one in enumerate(numbers):
