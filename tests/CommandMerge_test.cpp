@@ -259,6 +259,34 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
             std::vector<std::string>{});
 }
 
+// The line is for where the merge is typed, though the parts were rendered elsewhere, among names with blanks.
+TEST(CommandMergeInvariant, TheCommandForMissingPartsRunsWhereTheMergeIsTyped) {
+  const Flight flight;
+  const fs::path work = flight.scratch / "a scene", merge_from = flight.scratch / "b c";
+  fs::create_directory(work), fs::create_directory(merge_from);
+  fs::rename(flight.scratch / "s.json", work / "my film's.json");
+  const std::string words = "render \"my film's.json\" --write cube,truth --out ";
+  ASSERT_EQ(malusIn(work, words + "../whole").code, 0);
+  for (int k : {1, 3})
+    ASSERT_EQ(malusIn(work, words + fmt::format("'../b c/my parts' --part {}/4", k)).code, 0);
+  const Outcome refused = malusIn(merge_from, "merge 'my parts'");
+  EXPECT_EQ(refused.code, 2);
+  const std::string command = refused.err.substr(refused.err.find("; run ") + 6);
+  EXPECT_EQ(command,
+            fmt::format("cd '{}/a scene' && for k in 2 4; do malus render 'my "
+                        "film'\\''s.json' --part $k/4 --write cube,truth --out '{}/my parts' "
+                        "--resume; done\n",
+                        fs::canonical(flight.scratch.path).string(),
+                        fs::canonical(merge_from).string()));
+  const Outcome remedy = runIn(merge_from, "{ malus() { '" MALUS_PROGRAM "' \"$@\"; }; " +
+                                               command.substr(0, command.size() - 1) + "; }");
+  ASSERT_EQ(remedy.code, 0) << remedy.err;
+  ASSERT_EQ(malusIn(merge_from, "merge 'my parts'").code, 0);
+  for (const char* name : {"my film's.0000.img", "my film's.0002.truth.img"})
+    EXPECT_EQ(contents(merge_from / "my parts" / name),
+              contents(flight.scratch / "whole" / name));
+}
+
 TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
   const Flight flight;
   for (int k = 1; k <= 3; ++k)
@@ -304,10 +332,31 @@ TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
   EXPECT_EQ(complaint([](const fs::path&) {}), "none");  // the negative control
   says("seed = 7", with("seed"));
   says("formats = ", with("exr"));
-  says("dealt = ", with("four"));
+  says("dealt[\"parts\"] = 4: is not that of spoilt/s.0000.part-1-of-3.run.json: 3",
+       with("four"));
+  const auto mesh = [&](const nlohmann::json& sum) {
+    return [&, sum](const fs::path& in) {
+      auto changed = record(in / second);
+      const auto of = [](const auto& item) { return item.key().ends_with("chunky-bar.obj"); };
+      const auto items = changed["files"].items();
+      const auto found = std::find_if(items.begin(), items.end(), of);
+      changed["files"][found.key()] = sum;
+      put(in / second, changed.dump());
+    };
+  };
+  says("chunky-bar.obj\"] = \"00000000\": is not that of ", mesh("00000000"));
   says("s.0001: is there in rectangles and in equal parts", with("rectangle"));
   says("scene_crc32 = ", rewritten(second, "scene_crc32", "00000000"));
   says("program = \"malus 0.0.1\"", rewritten(second, "program", "malus 0.0.1"));
+  says("sources = \"0123456789ab\": is not that of ",
+       rewritten(second, "sources", "0123456789ab"));
+  says("sources = \"0123456789ab\": is not what merges, malus 0.1.0 of the sources " +
+           record(flight.scratch / "good" / second)["sources"].get<std::string>(),
+       [&](const fs::path& in) {
+         for (int k : {1, 2, 3})
+           rewritten(fmt::format("s.{:04}.part-{}-of-3.run.json", k - 1, k), "sources",
+                     "0123456789ab")(in);
+       });
   says("does not tell how its tiles were dealt", rewritten(second, "part", 3));
   says("is no frame of part 2 of 3", rewritten(second, "frame", 2));
   says("record that is not ours", rewritten(second, "frame", "x"));

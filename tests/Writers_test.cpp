@@ -226,6 +226,15 @@ TEST(WritersInvariant, AWholeRecordNamesWhatHasChanged) {
   EXPECT_EQ(program_differs.code, 2);
   EXPECT_NE(program_differs.err.find("is not the program"), std::string::npos)
       << program_differs.err;
+  other = record;
+  EXPECT_EQ(other["sources"], malus::programSources());
+  other["sources"] = "0123456789ab";
+  put(place.scratch / "b/s.run.json.part", other.dump());
+  const Outcome build_differs = place.render("--out b --resume");
+  EXPECT_EQ(build_differs.code, 2);
+  EXPECT_NE(build_differs.err.find("is not the build that this frame was made with"),
+            std::string::npos)
+      << build_differs.err;
   put(place.scratch / "b/s.run.json.part", record.dump());
   put(place.scratch / "bar.obj", "# mended\n" + place.file("bar.obj"));
   const Outcome mesh_differs = place.render("--out b --resume");
