@@ -259,6 +259,24 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
             std::vector<std::string>{});
 }
 
+// mpirun's processes know their number from the environment: the first merges, the others leave it to that one.
+TEST(CommandMergeInvariant, OneOfSeveralProcessesMerges) {
+  const Flight flight;
+  for (int k : {1, 2})
+    flight.render(fmt::format("--out p --frames 0 --write cube,truth --part {}/2", k));
+  const std::size_t before = filesBelow(flight.scratch / "p");
+  const auto rank = [&](int number) {
+    return malusIn(flight.scratch.path, "merge p",
+                   fmt::format("OMPI_COMM_WORLD_SIZE=2 PMIX_RANK={}", number));
+  };
+  const Outcome second = rank(1);
+  EXPECT_EQ(second.code, 0);
+  EXPECT_EQ(second.out + second.err, "");
+  EXPECT_EQ(filesBelow(flight.scratch / "p"), before);
+  EXPECT_EQ(rank(0).code, 0);
+  EXPECT_TRUE(fs::exists(flight.scratch / "p/s.0000.img"));
+}
+
 // The line is for where the merge is typed, though the parts were rendered elsewhere, among names with blanks.
 TEST(CommandMergeInvariant, TheCommandForMissingPartsRunsWhereTheMergeIsTyped) {
   const Flight flight;

@@ -3,7 +3,7 @@
 
 munged, slurmctld and three slurmds run in a directory of their own under /tmp, bound to the loopback, and are ended at
 the end. A film is rendered by one process; by array jobs, undisturbed, with one task killed, and with one node's files
-lost; by mpirun with several numbers of ranks, with one of them killed, and with ranks that have no scene; and by an MPI
+lost; by mpirun with several numbers of ranks, with one of them killed (rank 0, too), and with ranks that have no scene; and by an MPI
 job of Slurm. Each time the bytes of all files but the record are compared. The last line says whether all are equal.
 """
 import filecmp
@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any, Callable
 
@@ -123,8 +124,12 @@ def differing(whole: Path, merged: Path) -> list[str]:
                   if not (merged / name).exists() or not filecmp.cmp(whole / name, merged / name, shallow=False))
 
 
+def has_lines(file: Path, lines: int) -> bool:
+    return file.exists() and file.read_bytes().count(b"\n") > lines
+
+
 def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) -> None:
-    """mpirun without Slurm: several numbers of ranks; one killed; ranks in a directory without the scene; no plug-in."""
+    """mpirun without Slurm: several numbers of ranks; one killed, then the first; ranks in a directory without the scene; no plug-in."""
 
     def run(*command: str, where: Path = home, **more: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run([*MPIRUN, *command], cwd=where, env=os.environ | more, text=True, check=False, capture_output=True,
@@ -136,22 +141,24 @@ def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) 
             sys.exit(f"{ranks} ranks: {done.stderr}")
         enter(f"mpirun, {ranks} ranks", f"ranks-{ranks}", 0)
 
-    with subprocess.Popen([*MPIRUN, "-n", "3", "malus", "render", "film.json", "--out", "died", "--threads", "1"], cwd=home,
-                          text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
-        journal = home / "died/film.0001.truth.img.tiles"
-        wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > tiles // 3, "the ranks do not begin")
-        children = (pid.name for pid in Path("/proc").iterdir() if pid.name.isdigit())
-        victim = next(pid for pid in children if rank_of(pid, running.pid) == 2)
-        os.kill(int(victim), signal.SIGKILL)
-        complaint = running.communicate(timeout=PATIENCE_S)[1]
-    if running.returncode == 0 or "--resume goes on from here" not in complaint:
-        sys.exit(f"a rank was killed, and how to go on was not said: {complaint}")
-    kept = journal.read_bytes().count(b"\n") - 1
-    done = run("-n", "2", "malus", "render", "film.json", "--out", "died", "--resume")
-    if done.returncode != 0 or f"frame 2 of 3: {tiles - kept} of {tiles} tiles" not in done.stderr:
-        sys.exit(f"{kept} tiles were kept: {done.stderr}")
-    print(next(line for line in complaint.splitlines() if line.endswith("goes on from here")))
-    enter("one of 3 ranks killed", "died", tiles - kept)
+    for victim, words in ((2, "goes on from here"), (0, "--resume goes on")):  # rank 0 has said it before it dies
+        out = f"died-{victim}"
+        with subprocess.Popen([*MPIRUN, "-n", "3", "malus", "render", "film.json", "--out", out, "--threads", "1"], cwd=home,
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+            journal = home / out / "film.0001.truth.img.tiles"
+            wait_for(partial(has_lines, journal, tiles // 3), "the ranks do not begin")
+            children = (pid.name for pid in Path("/proc").iterdir() if pid.name.isdigit())
+            os.kill(int(next(pid for pid in children if rank_of(pid, running.pid) == victim)), signal.SIGKILL)
+            complaint = running.communicate(timeout=PATIENCE_S)[1]
+        line = next((line for line in complaint.splitlines() if line.endswith(words)), "")
+        if running.returncode == 0 or f"malus render film.json --out {out} --resume" not in line:
+            sys.exit(f"rank {victim} was killed, and how to go on was not said: {complaint}")
+        kept = journal.read_bytes().count(b"\n") - 1
+        done = run("-n", "2", "malus", "render", "film.json", "--out", out, "--resume")
+        if done.returncode != 0 or f"frame 2 of 3: {tiles - kept} of {tiles} tiles" not in done.stderr:
+            sys.exit(f"{kept} tiles were kept: {done.stderr}")
+        print(line)
+        enter(f"rank {victim} of 3 killed", out, tiles - kept)
 
     (home / "elsewhere").mkdir()
     first = ["-n", "1", "--wdir", str(home), "malus", "render", "film.json", "--out", str(home / "sent")]
@@ -289,7 +296,7 @@ def main() -> None:
                        timeout=PATIENCE_S)
         control = len(differing(home / "whole", home / "other"))
     finally:
-        if len(rows) == 10:
+        if len(rows) == 11:
             shutil.rmtree(home)
         else:
             print(f"The logs are in {home}", file=sys.stderr)
