@@ -115,7 +115,7 @@ TEST(ManyMatricesIdentity, TheRoomIsThatOfTheMatrices) {
     three.cos_i[j] = three.cos_r[j] = 1, three.cos_phi[j] = -1;
     three.sin_i[j] = three.sin_r[j] = three.sin_phi[j] = 0;
   }
-  for (const CDBRDFModel* model : {static_cast<const CDBRDFModel*>(&fast), &plain}) {
+  for (const CDBRDFModel* model : std::initializer_list<const CDBRDFModel*>{&fast, &plain}) {
     std::vector<double> out(3 * 16 * model->grid()->size() + 1);
     const std::span<double> more(out), all = more.first(out.size() - 1);
     EXPECT_NO_THROW(model->evaluateMany(three, all));
