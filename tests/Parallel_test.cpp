@@ -209,6 +209,20 @@ TEST(ParallelInvariant, WhoLooksMayWork) {
   EXPECT_EQ(looks, 0);
 }
 
+TEST(ParallelInvariant, AWatchedWorkThatKeepsItsExceptionsEndsWithThatOfWhoLooks) {
+  const auto look = [] { throw std::runtime_error("enough"); };
+  for (const bool throws : {false, true}) {
+    const auto work = [&] {
+      try {
+        for (;;) mayStop();
+      } catch (...) {
+        if (throws) throw std::out_of_range("its own");
+      }
+    };
+    EXPECT_THROW(watched(look, work), std::runtime_error) << throws;
+  }
+}
+
 TEST(ParallelInvariant, AWatchedWorkMayEndByItself) {
   int sum = 0;
   watched([] { throw std::runtime_error("too early"); }, [&] { mayStop(), ++sum; });

@@ -239,6 +239,7 @@ STEEP = np.linspace(0, 89, 100_000)
 @pytest.mark.parametrize("work", [
     lambda: malus.emissivity("torrance-sparrow", STEEP, **COPPER),  # minutes
     lambda: malus.dhr("torrance-sparrow", STEEP, **COPPER),
+    lambda: malus.emissivity("torrance-sparrow", STEEP[::1000], NM[:, None], **COPPER),  # few angles, which one thread computes
     lambda: malus.emissivity("torrance-sparrow", STEEP[::50], NM[:, None], **COPPER),
     lambda: malus.dhr("layered-paint", 30, NM, **malus.models()["layered-paint"].example),  # 500 tables of scattered light
     lambda: [malus.brdf("torrance-sparrow", STEEP[:, None], 40, np.arange(100), **COPPER) for _ in range(99)],
