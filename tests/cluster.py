@@ -177,31 +177,42 @@ def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) 
 
 
 def scaling(home: Path, scene: dict[str, Any], record: Path) -> None:
-    """Writes what so many ranks use for cheap tiles, in processor time, which other work on the machine changes little."""
+    """Writes what so many ranks use for cheap tiles, in processor time, which other work on the machine changes little, and how
+    long they take for dear ones, by the clock: the machine must be idle."""
     small = scene | {"geometry": scene["geometry"][1:], "sensor": scene["sensor"] | {"width": 1024, "height": 1024},
                      "radiometry": {"sampling": "grid-rotated", "rays": [1], "seed": 1},
                      "platform": scene["platform"] | {"frames": 1}}
     (home / "small.json").write_text(json.dumps(small), encoding="utf-8")
     tiles = (1024 // 16) ** 2
 
-    def once_s(ranks: int, scene_file: str, *more: str) -> float:
+    def once_s(ranks: int, scene_file: str, *more: str) -> tuple[float, float]:
         before = os.times()
-        subprocess.run([*MPIRUN, "-n", str(ranks), "malus", "render", scene_file, "--out", f"cost-{ranks}", "--threads", "1",
-                        "--write", "cube,truth", *more], cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
+        command = ["malus", "render", scene_file, "--out", f"cost-{ranks}", "--write", "cube,truth", *more]
+        if "--threads" not in more:  # unbound: Open MPI would bind each of two ranks to a core, rank 0 with both of its threads
+            command = [*MPIRUN, "--bind-to", "none", "-n", str(ranks), *command, "--threads", "1"]
+        subprocess.run(command, cwd=home, check=True, capture_output=True, timeout=PATIENCE_S)
         after = os.times()
-        return after.children_user + after.children_system - before.children_user - before.children_system
+        return (after.children_user + after.children_system - before.children_user - before.children_system,
+                after.elapsed - before.elapsed)
 
-    def least_s(ranks: int, scene_file: str, *more: str) -> float:
-        return min(once_s(ranks, scene_file, *more) for _ in range(TIMES))
+    def least_s(ranks: int, scene_file: str, *more: str, clock: bool = False) -> float:
+        return min(once_s(ranks, scene_file, *more)[clock] for _ in range(TIMES))
+
+    def dear_s(ranks: int, *more: str) -> float:
+        return least_s(ranks, "dear.json", *more, clock=True) - least_s(ranks, "dear.json", *more, *one_tile, clock=True)
 
     one_tile = ("--part", "0,0,16,16")
     film = (least_s(1, "film.json", "--frames", "0") - least_s(1, "film.json", "--frames", "0", *one_tile)) / 255
-    lines = [f"# title: What ranks use for a picture of {tiles} cheap tiles, in processor time without their start, and one tile of a film",
-             f"# source: make cluster-test, the least of {TIMES} runs each", f"# date: {time.strftime('%Y-%m-%d', time.gmtime())}",
-             "ranks,tiles,work_s,film_tile_s"]
+    dear = small | {"geometry": scene["geometry"], "sensor": scene["sensor"],
+                    "radiometry": {"sampling": "importance", "rays": [2500], "seed": 1}}
+    (home / "dear.json").write_text(json.dumps(dear), encoding="utf-8")
+    lines = [f"# title: What ranks use for a picture of {tiles} cheap tiles, and how long they take for 256 dear ones, without their start",
+             f"# source: make cluster-test on an idle machine of {os.cpu_count()} processors, the least of {TIMES} runs each",
+             f"# date: {time.strftime('%Y-%m-%d', time.gmtime())}",
+             "ranks,processors,tiles,work_s,film_tile_s,dear_clock_s,dear_threads_s"]
     for ranks in (1, 2, 3, 8):
         work = least_s(ranks, "small.json") - least_s(ranks, "small.json", *one_tile)
-        lines.append(f"{ranks},{tiles},{work:.3f},{film:.6f}")
+        lines.append(f"{ranks},{os.cpu_count()},{tiles},{work:.3f},{film:.6f},{dear_s(ranks):.2f},{dear_s(ranks, '--threads', str(ranks)):.2f}")
     record.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -50,9 +50,19 @@ def build(jobs: str, targets: str) -> list[str]:
     return ["cmake", "--build", "build", "-j", jobs, "--target", *targets.split()]
 
 
-def whole(name: str, rows: list[tuple[str, float, float]]) -> tuple[str, float, float]:
+Row = tuple[str, float, float]  # part, CPU seconds, seconds on the clock
+
+
+def told(row: Row) -> Row:
+    """Prints a row as soon as it is known."""
+    name, cpu, clock = row
+    print(f"{name:32}{cpu:8.0f}{clock:9.0f}", flush=True)
+    return row
+
+
+def whole(name: str, rows: list[Row]) -> Row:
     """The sum of all rows until now."""
-    return name, sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)
+    return told((name, sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)))
 
 
 def chapters(tree: str) -> list[str]:
@@ -62,12 +72,12 @@ def chapters(tree: str) -> list[str]:
     return [tested[len(tested) * (2 * k + 1) // (2 * EDITS)] for k in range(EDITS)]
 
 
-def edit(tree: str, chapter: str, jobs: str) -> tuple[str, float, float]:
+def edit(tree: str, chapter: str, jobs: str) -> Row:
     """What it costs to give the code of a chapter a new name and to run its test."""
     floor, name = os.path.basename(os.path.dirname(chapter)), os.path.basename(chapter)[:-3]
     with open(chapter, "a", encoding="utf-8") as file:
         file.write(f'\n<<{floor}/{name}.cpp>>=\nextern "C" {{\nextern int malus_edited_{name};\nint malus_edited_{name} = 1;\n}}\n@\n')
-    return f"edit {floor}/{name}", *measured(tree, build(jobs, name + "_test"), [f"build/tests/{name}_test"])
+    return told((f"edit {floor}/{name}", *measured(tree, build(jobs, name + "_test"), [f"build/tests/{name}_test"])))
 
 
 def slowest(log: str) -> list[tuple[float, str]]:
@@ -90,23 +100,22 @@ def main() -> None:
     shutil.rmtree(bench, ignore_errors=True)
     subprocess.run(["git", "clone", "-q", "--shared", ROOT, tree], check=True)
     commit = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=tree, check=True, capture_output=True, text=True).stdout.strip()
-    rows = [("configure", *measured(tree, ["cmake", "--preset", "release", "-G", "Ninja"]))]
-    rows += [(name, *measured(tree, build(jobs, targets))) for name, targets in PARTS]
+    print(f"{'part':32}{'CPU s':>8}{'clock s':>9}   (-j {jobs}, {commit})")
+    rows = [told(("configure", *measured(tree, ["cmake", "--preset", "release", "-G", "Ninja"])))]
+    rows += [told((name, *measured(tree, build(jobs, targets)))) for name, targets in PARTS]
     make = whole("make", rows)
-    rows.append(("compile tests", *measured(tree, build(jobs, "all"))))
-    rows.append(("run tests", *measured(tree, ["ctest", "--test-dir", "build", "-j", jobs, "--output-on-failure"])))
+    rows.append(told(("compile tests", *measured(tree, build(jobs, "all")))))
+    rows.append(told(("run tests", *measured(tree, ["ctest", "--test-dir", "build", "-j", jobs, "--output-on-failure"]))))
     rows += [make, whole("make test", rows)]
     log = slowest(os.path.join(tree, "build", ".ninja_log"))
     edits = [edit(tree, chapter, jobs) for chapter in chapters(tree)]
-    rows += [*edits, ("edit, median", statistics.median(cpu for _, cpu, _ in edits), statistics.median(clock for _, _, clock in edits))]
+    median = told(("edit, median", statistics.median(cpu for _, cpu, _ in edits), statistics.median(clock for _, _, clock in edits)))
+    rows += [*edits, median]
     with open(RECORD, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(("date", "commit", "jobs", "part", "cpu_s", "clock_s"))
         today = datetime.datetime.now(datetime.timezone.utc).date()
         table.writerows((today, commit, jobs, name, f"{cpu:.0f}", f"{clock:.0f}") for name, cpu, clock in rows)
-    print(f"{'part':32}{'CPU s':>8}{'clock s':>9}   (-j {jobs}, {commit})")
-    for name, cpu, clock in rows:
-        print(f"{name:32}{cpu:8.0f}{clock:9.0f}")
     print(f"\nThe {SLOWEST} slowest files, seconds on the clock:")
     for seconds, output in log:
         print(f"{seconds:8.1f}  {output}")
