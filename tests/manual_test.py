@@ -94,7 +94,7 @@ class Manual(unittest.TestCase):
 
 def readme(pattern: str) -> list[str]:
     """The lines of the README that are shown as typed, from one that begins so to the next that is none."""
-    shown = (TOP / "README.md").read_text(encoding="utf-8").split("    " + pattern)[1].split("\n\nIn 2002")[0]
+    shown = (TOP / "README.md").read_text(encoding="utf-8").split("    " + pattern)[1].split("\n\nTwo lines put")[0]
     return [line.removeprefix("    ") for line in (pattern + shown).split("\n") if line]
 
 
