@@ -160,7 +160,6 @@ TEST(ParallelIdentity, InnerWorkWithinOuterWork) {
 TEST(ParallelInvariant, AWatchedWorkEndsWhereverItIs) {
   for (const int threads : {1, 3}) {
     const auto caller = std::this_thread::get_id();
-    std::atomic<bool> elsewhere = false;
     int looks = 0;
     const auto look = [&] {
       EXPECT_EQ(std::this_thread::get_id(), caller);
