@@ -473,13 +473,14 @@ TEST(WritersInvariant, AMovedProgramFindsItsDataOrSaysWhatIsMissing) {
   for (const char* program : {"malus", "malus-reproduce"})
     fs::copy_file(build / program, bin / program);
   for (const auto& library : fs::directory_iterator(build / "lib"))
-    if (library.path().filename() != "libmalus_pictures.so")
+    if (library.path().filename() != "libmalus_netcdf.so")
       fs::copy_file(library.path(), lib / library.path().filename());
   const std::string moved = "moved/bin/malus ";
-  const Outcome lame = runIn(place.scratch.path, moved + "render s.json --dry-run");
+  const Outcome lame =
+      runIn(place.scratch.path, moved + "render s.json --write netcdf --dry-run");
   EXPECT_EQ(lame.code, 2);
-  EXPECT_NE(lame.err.find("libmalus_pictures.so"), std::string::npos) << lame.err;
-  fs::copy_file(build / "lib" / "libmalus_pictures.so", lib / "libmalus_pictures.so");
+  EXPECT_NE(lame.err.find("libmalus_netcdf.so"), std::string::npos) << lame.err;
+  fs::copy_file(build / "lib" / "libmalus_netcdf.so", lib / "libmalus_netcdf.so");
   EXPECT_EQ(runIn(place.scratch.path, moved + "render s.json --out b").code, 0);
   put(place.scratch / "moved/share/malus/validation/inventory.csv", "spoilt");
   const Outcome list = runIn(place.scratch.path, moved + "reproduce T3.1 --out r");
