@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "malus/thesis/XSampling.hpp"
+#include "malus/thesis/XSpeed.hpp"
 
 using namespace malus;
 
@@ -16,15 +17,15 @@ constexpr int side = 128;
 // 256 x 256 pixels are four times as many; two processors share the work
 constexpr double scale = 4 / 2.0;
 
-/// Mitsuba 3.8, measured elsewhere on two cores: two reflections that see the sky, 64 paths.
+/// Mitsuba 3.8, measured elsewhere on two cores: two reflections that see the sky; 256 paths for one band, 64 for a hundred.
 struct Peer {
   const char* mode;
   double error, seconds;
 };
 constexpr Peer one_band[] = {
-    {"LLVM", 0.167, 2.1}, {"LLVM, sun weighted", 0.116, 2.1}, {"scalar", 0.167, 8.7}};
-constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.167, 64},
-                                  {"scalar, 100 bands", 0.167, 219}};
+    {"LLVM", 0.167, 1.95}, {"LLVM, sun weighted", 0.116, 1.95}, {"scalar", 0.167, 8.7}};
+constexpr Peer hundred_bands[] = {{"LLVM, 100 bands", 0.327, 64},
+                                  {"scalar, 100 bands", 0.327, 219}};
 
 std::vector<SamplingRun> measure(SamplingTask task) {
   task.side = side;
@@ -74,15 +75,20 @@ void printSamplings() {
       "{1:28} {2:>4} {3:>8} {4:>8} {5:>8} {6:>8} {7:>9} {8:>10}\n",
       side, "rms error / mean S0", "rays", "S0", "S1", "S2", "S3", "seconds", "S0 x s");
   print(measure({}), "");
-  const std::vector<int> rays{2, 4, 8, 16, 32, 64};
-  const auto one = measure({.rays = rays, .second = 2, .reference_rays = 512, .only = "sobol"});
+  const std::vector<int> rays{1, 2, 4, 8, 16, 32, 64};
+  const auto one =
+      measure({.rays = rays, .second = 2, .reference_rays = 512, .only = "images"});
   const auto hundred = measure(
-      {.rays = rays, .second = 2, .reference_rays = 256, .only = "sobol", .bands = 100});
+      {.rays = rays, .second = 2, .reference_rays = 256, .only = "images", .bands = 100});
   print(one, ", sky twice");
   print(hundred, ", 100 bands");
   fmt::print(
-      "Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky, 64 "
-      "paths):\n");
+      "Mitsuba 3.8 (measured elsewhere on two cores; two reflections that see the sky):\n");
   compare(one_band, one);
   compare(hundred_bands, hundred);
+  const ScalarRatio scalar = timeAgainstScalar();
+  fmt::print(
+      "\nC5: an unpolarised picture takes {:.2f} ({:.2f} to {:.2f}) of a scalar renderer's "
+      "time\n",
+      scalar.ratio, scalar.lowest, scalar.highest);
 }

@@ -3,7 +3,7 @@ width = 760
 load style
 set logscale xy
 set xrange [13:160]
-set yrange [0.03:1.2]
+set yrange [0.02:1.2]
 set xtics (16, 32, 64, 128)
 set xlabel 'rays from the first surface'
 set ylabel 'rms error of S_0 / mean S_0'
@@ -17,5 +17,6 @@ plot 'convergence.csv' using 'rays':'random' with linespoints linetype 1 title '
      '' using 'rays':'adaptive' with linespoints linetype 4 title 'adaptive', \
      '' using 'rays':'importance' with linespoints linetype 5 title 'importance', \
      '' using 'rays':'sobol' with linespoints linetype 6 title 'importance, Sobol', \
+     '' using 'rays':'images' with linespoints linetype 7 title 'images of the sun', \
      a / sqrt(x) with lines linestyle 12 title 'slope −1/2', \
      a * 4 / x with lines linestyle 12 dashtype (12,6) title 'slope −1'
