@@ -54,10 +54,11 @@ reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without
 	@echo "The report: $(BUILD)/report/report.html"
 
 bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops beside bare loops, print the ratios
-	@cmake --build $(BUILD) -j $(JOBS) --target malus_image_bench malus_bench malus_sky_bench
+	@cmake --build $(BUILD) -j $(JOBS) --target malus malus_image_bench malus_bench malus_sky_bench
 	@$(BUILD)/malus_image_bench
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
+	@tests/bench/commands.py $(BUILD)/malus
 	@! [ -d $(BUILD)/python/malus ] || PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/bench/python.py
 
 bench-build: need-test need-browser ## build HEAD afresh in build-bench, run its tests, edit it; record the seconds of each part

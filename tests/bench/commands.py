@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""What a user waits for: whole commands with all their files, on the copper chunky bar.
+
+    commands.py MALUS
+
+Looks for the fewest rays from the first surface whose error of S0 (rms over mean, against a picture with many) is
+below a peer's, and prints for each command the least seconds on the clock of some runs, the CPU seconds of that run,
+and the seconds that were aimed at.
+"""
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "chunky-bar-copper.json"
+TURNS = 5
+RAYS = (2, 3, 4, 5, 6, 7, 9, 12, 17, 25, 33)
+ERRORS = ((0.167, 0.12), (0.116, 0.15))  # of S0, and the seconds aimed at
+
+
+def scene(work: pathlib.Path, side: int, bands: int, rays: int, seed: int = 1) -> pathlib.Path:
+    """The bar with so many pixels each way, bands, and rays from the first surface, the sun's included."""
+    text = SCENE.read_text(encoding="utf-8")
+    patches = ((r'"sampling": "grid-rotated", "rays": \[91, 1\], "seed": 1', f'"sampling": "importance", "rays": [{rays}, 2], "seed": {seed}'),
+               (r'"wavelength_nm": \[550\]', f'"wavelength_nm": {[500 + i for i in range(bands)]}'),
+               (r'"width": 256, "height": 256', f'"width": {side}, "height": {side}'),
+               (r'"pixel_pitch_um": 39.0625', f'"pixel_pitch_um": {10000 / side}'),
+               (r'"chunky-bar.obj"', f'"{SCENE.parent / "chunky-bar.obj"}"'))
+    for old, new in patches:
+        text, count = re.subn(old, new, text)
+        assert count == 1, old
+    path = work / f"bar-{side}-{bands}-{rays}.json"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def render(malus: str, path: pathlib.Path) -> tuple[float, float]:
+    """(seconds, CPU seconds) of the command, into a directory that it makes."""
+    out = path.with_suffix("")
+    subprocess.run(["rm", "-rf", str(out)], check=True)
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    subprocess.run([malus, "render", str(path), "--out", str(out)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    seconds, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    return seconds, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def s0(path: pathlib.Path) -> np.ndarray:
+    cube = np.fromfile(path.with_suffix("") / f"{path.stem}.img", "<f4")
+    return cube.reshape(-1, 4)[:, 0].astype(float)
+
+
+def best(malus: str, path: pathlib.Path) -> tuple[float, float]:
+    return min(render(malus, path) for _ in range(TURNS))
+
+
+def main() -> None:
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    malus = os.path.abspath(sys.argv[1])
+    print(f"\n{'whole commands, copper bar, two reflections':56}{'seconds':>9}{'CPU':>7}{'aim':>7}")
+
+    def tell(name: str, path: pathlib.Path, aim: float) -> None:
+        seconds, cpu = best(malus, path)
+        print(f"{name:56}{seconds:9.2f}{cpu:7.2f}{aim:7.2f}", flush=True)
+
+    with tempfile.TemporaryDirectory() as directory:
+        work = pathlib.Path(directory)
+        many = scene(work, 256, 1, 513, 4711)
+        render(malus, many)
+        reference = s0(many)
+        errors = {}
+        for rays in RAYS:
+            path = scene(work, 256, 1, rays)
+            render(malus, path)
+            errors[rays] = float(np.sqrt(np.mean((s0(path) - reference) ** 2)) / reference.mean())
+        for error, aim in ERRORS:
+            enough = [rays for rays in RAYS if errors[rays] <= error]
+            if not enough:
+                print(f"the error {error} is not reached by {RAYS[-1]} rays")
+                continue
+            rays = enough[0]
+            tell(f"1 band to the error {error} (it is {errors[rays]:.3f}, {rays} rays)", scene(work, 256, 1, rays), aim)
+            if error == ERRORS[0][0]:
+                tell(f"100 bands to the same error ({rays} rays)", scene(work, 256, 100, rays), 0.35)
+        tell("16 x 16 pixels, 1 band: start-up and files", scene(work, 16, 1, 5), 0.05)
+
+
+main()
