@@ -1209,6 +1209,13 @@ TEST(CommandRenderInvariant, TheMemoryThatIsToldIsEnough) {
     EXPECT_EQ(std::filesystem::exists(place.scratch / "a/s.nc"), order == "bsq");
     const auto read = [&] { return readCube(cube).data.size() > 0; };
     EXPECT_EQ(endingWithin(rlim_t(most), read), Ending::out_of_memory);  // negative control
+    if (order == "bsq") {  // another one: netCDF is read by its own library, whole
+      const Outcome info =
+          runIn(place.scratch.path,
+                fmt::format("ulimit -d {:.0f}; '{}' info a/s.nc", most / 1024, MALUS_PROGRAM));
+      EXPECT_EQ(info.code, 2);
+      EXPECT_NE(info.err.find("not enough memory"), std::string::npos) << info.err;
+    }
     std::filesystem::remove_all(place.scratch / "a");
   }
 }
