@@ -1,7 +1,6 @@
 // The door for cubes: the header of an ENVI cube up to a byte that is zero, and its numbers behind it.
-#include "malus/files/CubeView.hpp"
-
 #include "Door.hpp"
+#include "malus/files/CubeView.hpp"
 #include "malus/files/Quicklooks.hpp"
 
 using namespace malus;
