@@ -1164,6 +1164,26 @@ TEST(CommandRenderInvariant, LargePicturesNeedLessThanFourGibibytes) {
   }
 }
 
+TEST(CommandRenderInvariant, RowsThatOpenEXRCannotWriteAreKnownBeforeTheFirstRay) {
+  json scene = largeScene(4096, 0);
+  scene["sensor"]["height"] = 16;
+  scene["materials"] = json::object();
+  for (const char* name : {"copper-010", "copper-015", "copper-020", "copper-030", "ground"})
+    scene["materials"][name] = {{"model", "lambertian"}, {"reflectance", 0.3}};
+  for (int i = 0; i < 2000; ++i) scene["bands"]["wavelength_nm"].push_back(400 + 0.25 * i);
+  const Workplace wide(scene);
+  const Outcome named = wide.render("--write exr --dry-run");
+  EXPECT_EQ(named.code, 2);
+  EXPECT_NE(named.err.find("exr: is for rows of 31250000 numbers"), std::string::npos)
+      << named.err;
+  const Outcome usual = wide.render("--dry-run");
+  EXPECT_EQ(usual.code, 0) << usual.err;
+  EXPECT_NE(usual.out.find("it is left out"), std::string::npos) << usual.out;
+  scene["sensor"]["width"] = 3000;  // the negative control
+  const Outcome narrow = Workplace(scene).render("--write exr --dry-run");
+  EXPECT_EQ(narrow.code, 0) << narrow.err;
+}
+
 TEST(CommandRenderInvariant, TilesInTheFarCornersOfALargePictureTakeLittleMemory) {
   if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";
   const Workplace place(largeScene(20000, 8));

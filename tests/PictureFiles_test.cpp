@@ -105,6 +105,14 @@ TEST(PictureFilesIdentity, WidePicturesHaveFewerThreads) {
   EXPECT_GT(memoryOfEXR(20000, 32, threads + 1), 1e9);
 }
 
+// One of 2.2 gigabytes for sixteen rows ended the program by a signal.
+TEST(PictureFilesIdentity, RowsThatOpenEXRCannotCountAreRefused) {
+  const Scratch scratch;
+  const std::vector<float> row(most_row_numbers_of_EXR + 1);
+  EXPECT_THROW(savePicture({row.size(), 1, {"R"}, {}, row}, scratch / "x.exr"), InputError);
+  EXPECT_EQ(filesBelow(scratch.path), 0u);
+}
+
 // PNG (ISO/IEC 15948): signature, then the chunk IHDR with width, height, bits a channel and colour type 2 for RGB.
 TEST(PictureFilesPublished, PngBeginsAsItsStandardSays) {
   const Scratch scratch;
