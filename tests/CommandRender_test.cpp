@@ -1,6 +1,7 @@
 // malus render from outside (nw/app/CommandRender.nw), and what it says of bad scenes (nw/files/SceneReader.nw,
 // SceneSchema.nw, SceneMaterials.nw); its tiles (nw/render/Tile.nw,
 // nw/render/Renderer.nw, nw/render/Scene.nw).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -13,11 +14,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "Memory.hpp"
 #include "Program.hpp"
+#include "malus/app/RenderNeeds.hpp"
+#include "malus/app/RenderPlan.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/files/Cube.hpp"
 #include "malus/files/SceneReader.hpp"
@@ -1115,4 +1120,122 @@ TEST(SceneIdentity, BroadBandsAreMixedFromTheGridOfLight) {
   EXPECT_NEAR(frame.at(0, 0, 1)[0] / per_radiance, 0.6, rounding);
   EXPECT_GT(std::abs(frame.at(0, 0, 1)[0] / per_radiance - 0.5),
             rounding);  // the other band's value would be seen
+}
+
+// ---------------------------------------------------------------- memory
+
+namespace {
+/// A picture that costs little for its size.
+json largeScene(int side, int bands) {
+  json scene = smallScene(side);
+  scene["sensor"]["height"] = side;
+  scene["radiometry"] = {{"sampling", "grid"}, {"rays", {1}}, {"seed", 5}};
+  scene["bands"] = {{"wavelength_nm", json::array()}};
+  for (int i = 0; i < bands; ++i) scene["bands"]["wavelength_nm"].push_back(450 + i);
+  return scene;
+}
+
+/// What is told of the memory of a run, in bytes.
+double memoryIn(const std::string& told) {
+  std::smatch m;
+  if (!std::regex_search(told, m, std::regex("memory    about ([0-9]+) MB"))) return -1;
+  return 1e6 * std::stod(m[1]);
+}
+
+/// The same, whatever room the disk has.
+double memoryToldOf(const Workplace& place, const std::string& write, int threads) {
+  RenderFlags flags;
+  flags.scene = (place.scratch / "s.json").string(), flags.write = write;
+  return memoryIn(describeNeeds(planOf(flags), {}, threads));
+}
+}  // namespace
+
+TEST(CommandRenderInvariant, LargePicturesNeedLessThanFourGibibytes) {
+  constexpr double most = 4.0 * (1 << 30);
+  for (const auto& [side, bands] : {std::pair{20000, 8}, {4096, 400}}) {
+    const Workplace place(largeScene(side, bands));
+    for (const char* write : {"", "cube,truth,pictures,exr,netcdf"})
+      for (const int threads : {1, 8}) {
+        const double told = memoryToldOf(place, write, threads);
+        EXPECT_GT(told, 20e6) << side;
+        EXPECT_LT(told, most) << side << ' ' << write << ' ' << threads;
+        EXPECT_GT(double(side) * side * bands * 16, most);  // the cube itself does not fit
+      }
+  }
+}
+
+TEST(CommandRenderInvariant, RowsThatOpenEXRCannotWriteAreKnownBeforeTheFirstRay) {
+  json scene = largeScene(4096, 0);
+  scene["sensor"]["height"] = 16;
+  scene["materials"] = json::object();
+  for (const char* name : {"copper-010", "copper-015", "copper-020", "copper-030", "ground"})
+    scene["materials"][name] = {{"model", "lambertian"}, {"reflectance", 0.3}};
+  for (int i = 0; i < 2000; ++i) scene["bands"]["wavelength_nm"].push_back(400 + 0.25 * i);
+  const Workplace wide(scene);
+  const Outcome named = wide.render("--write exr --dry-run");
+  EXPECT_EQ(named.code, 2);
+  EXPECT_NE(named.err.find("exr: is for rows of 31250000 numbers"), std::string::npos)
+      << named.err;
+  const Outcome usual = wide.render("--dry-run");
+  EXPECT_EQ(usual.code, 0) << usual.err;
+  EXPECT_NE(usual.out.find("it is left out"), std::string::npos) << usual.out;
+  scene["sensor"]["width"] = 3000;  // the negative control
+  const Outcome narrow = Workplace(scene).render("--write exr --dry-run");
+  EXPECT_EQ(narrow.code, 0) << narrow.err;
+}
+
+TEST(CommandRenderInvariant, TilesInTheFarCornersOfALargePictureTakeLittleMemory) {
+  if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";
+  const Workplace place(largeScene(20000, 8));
+  for (const std::string part :
+       {"0,0,16,16", "19984,0,20000,16", "0,19984,16,20000", "19984,19984,20000,20000"}) {
+    const Outcome outcome =
+        runIn(place.scratch.path, "ulimit -d 400000; '" MALUS_PROGRAM
+                                  "' render s.json --threads 2 --out a --part " +
+                                      part);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    std::string name = part;
+    std::ranges::replace(name, ',', '-');
+    const Cube cube = readCube(place.scratch / ("a/s." + name + ".img"));
+    EXPECT_EQ(cube.data.size(), 16u * 16 * 32);
+    EXPECT_GT(cube.at(15, 15, 0), 0);
+  }
+}
+
+// As much as the dry run tells is enough for a picture whose cube is larger, in all formats. The system also counts what
+// libraries reserve and never touch: Embree 128 MiB, each thread its stack of 8 MiB, some of them buffers.
+TEST(CommandRenderInvariant, TheMemoryThatIsToldIsEnough) {
+  if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";
+  constexpr double reserved = 180e6, cube_bytes = 512.0 * 512 * 72 * 16;
+  const Workplace place(largeScene(512, 72));
+  for (const auto& [order, write] :
+       {std::pair<std::string, std::string>{"bip", "cube,truth,pictures,exr"},
+        {"bsq", "cube,truth,pictures,netcdf"}}) {
+    const std::string flags =
+        "render s.json --threads 1 --out a --interleave " + order + " --write " + write;
+    const double told = memoryIn(malusIn(place.scratch.path, flags + " --dry-run").out),
+                 most = told + reserved;
+    ASSERT_GT(told, 0);
+    ASSERT_LT(most, cube_bytes);
+    const Outcome outcome =
+        runIn(place.scratch.path,
+              fmt::format("ulimit -d {:.0f}; '{}' {}", most / 1024, MALUS_PROGRAM, flags));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto cube = place.scratch / "a/s.img";
+    ASSERT_EQ(double(std::filesystem::file_size(cube)), cube_bytes);
+    for (const char* made : {"a/s.DoLP.png", "a/s.run.json"})
+      EXPECT_TRUE(std::filesystem::exists(place.scratch / made)) << made;
+    EXPECT_EQ(std::filesystem::exists(place.scratch / "a/s.exr"), order == "bip");
+    EXPECT_EQ(std::filesystem::exists(place.scratch / "a/s.nc"), order == "bsq");
+    const auto read = [&] { return readCube(cube).data.size() > 0; };
+    EXPECT_EQ(endingWithin(rlim_t(most), read), Ending::out_of_memory);  // negative control
+    if (order == "bsq") {  // another one: netCDF is read by its own library, whole
+      const Outcome info =
+          runIn(place.scratch.path,
+                fmt::format("ulimit -d {:.0f}; '{}' info a/s.nc", most / 1024, MALUS_PROGRAM));
+      EXPECT_EQ(info.code, 2);
+      EXPECT_NE(info.err.find("not enough memory"), std::string::npos) << info.err;
+    }
+    std::filesystem::remove_all(place.scratch / "a");
+  }
 }

@@ -1,17 +1,23 @@
-// Cubes on disk and pictures to look at (nw/files/Cube.nw, nw/files/Quicklooks.nw).
+// Cubes on disk, views of them and pictures to look at (nw/files/Cube.nw, nw/files/CubeView.nw, nw/files/Quicklooks.nw).
 #include "malus/files/Cube.hpp"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <random>
 
+#include "Memory.hpp"
 #include "Scratch.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/files/CubeView.hpp"
 #include "malus/files/Quicklooks.hpp"
 #include "malus/files/SpectralEXR.hpp"
 #include "malus/render/Tile.hpp"
@@ -106,6 +112,100 @@ TEST(CubeInvariant, ACubeOfAnotherOrderIsResumedToo) {
     EXPECT_EQ(contents(scratch / "x.img"), contents(scratch / "whole.img"));
   }
 }
+
+// ---------------------------------------------------------------- views
+
+TEST(CubeViewIdentity, AViewHoldsTheNumbersOfItsFileInAnyOrder) {
+  const Scratch scratch;
+  for (const Interleave order : {Interleave::bip, Interleave::bil, Interleave::bsq}) {
+    writeAll(scratch / "x.img", inOrder(order));
+    const CubeView view = openCube(scratch / "x.img");
+    EXPECT_EQ(view.header, inOrder(order));
+    EXPECT_EQ(view.isByPixel(), order == Interleave::bip);
+    std::vector<float> room;
+    for (std::size_t y = 0; y < height; ++y) {
+      const auto row = view.row(y, room);
+      ASSERT_EQ(std::vector(row.begin(), row.end()), tileOf({0, y, width, y + 1}));
+      const auto some = view.pixels(y, 2, 5, room);
+      ASSERT_EQ(std::vector(some.begin(), some.end()), tileOf({2, y, 5, y + 1}));
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t c = 0; c < 12; ++c) ASSERT_EQ(view.at(x, y, c), number(x, y, c));
+    }
+  }
+}
+
+TEST(CubeViewIdentity, ACubeInMemoryIsByPixelWhateverItsFileWas) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img", inOrder(Interleave::bsq));
+  Cube cube = readCube(scratch / "x.img");
+  const CubeView view = cube;
+  EXPECT_EQ(view.at(4, 3, 7), number(4, 3, 7));
+  EXPECT_EQ(view.numbers().data(), cube.data.data());  // nothing is copied
+  const CubeView kept = std::move(cube);
+  EXPECT_EQ(kept.at(4, 3, 7), number(4, 3, 7));
+  EXPECT_THROW(CubeView(header, view.numbers().first(5), nullptr), MathError);
+}
+
+TEST(CubeViewIdentity, WhatIsWrittenByRowsIsWhatIsWrittenByTiles) {
+  const Scratch scratch;
+  for (const Interleave order : {Interleave::bip, Interleave::bil, Interleave::bsq}) {
+    writeAll(scratch / "x.img", inOrder(order));
+    writeRows(scratch / "y.img", inOrder(order), [](std::size_t y, std::vector<float>& row) {
+      const std::vector<float> made = tileOf({0, y, width, y + 1});
+      row.insert(row.end(), made.begin(), made.end());
+    });
+    EXPECT_EQ(contents(scratch / "y.img"), contents(scratch / "x.img"));
+    EXPECT_EQ(contents(scratch / "y.img.hdr"), contents(scratch / "x.img.hdr"));
+  }
+}
+
+TEST(CubeViewIdentity, ABadCubeIsRefusedAsByItsReader) {
+  const Scratch scratch;
+  writeAll(scratch / "x.img");
+  std::filesystem::resize_file(scratch / "x.img", 100);
+  const std::string said = complaint(scratch / "x.img");
+  EXPECT_NE(said, "none");
+  try {
+    openCube(scratch / "x.img");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), said);
+  }
+}
+
+// A file with holes stands for a large cube: 1024 x 1024 pixels of 96 channels are 403 MB.
+TEST(CubeViewInvariant, ACubeMayBeLargerThanTheMemoryOfAProcess) {
+  if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";
+  constexpr std::size_t side = 1024, many = 96;
+  constexpr rlim_t enough = 150'000'000;
+  const Scratch scratch;
+  for (const Interleave order : {Interleave::bip, Interleave::bsq}) {
+    put(scratch / "x.img.hdr",
+        fmt::format("ENVI\nsamples = {}\nlines = {}\nbands = {}\ndata type = 4\n"
+                    "interleave = {}\nbyte order = 0\n",
+                    side, side, many, nameOf(order)));
+    put(scratch / "x.img", "");
+    std::filesystem::resize_file(scratch / "x.img", side * side * many * 4 - 4);
+    const float last = 7;
+    std::ofstream(scratch / "x.img", std::ios::binary | std::ios::app)
+        .write(reinterpret_cast<const char*>(&last), 4);
+    const auto look = [&] {
+      const CubeView cube = openCube(scratch / "x.img");
+      std::vector<float> room;
+      double sum = 0;
+      for (std::size_t y = 0; y < side; ++y)
+        for (const float number : cube.row(y, room)) sum += number;
+      quicklook(cube, many - 1, scratch / "x.png");
+      return sum == 7;
+    };
+    EXPECT_EQ(endingWithin(enough, look), Ending::good);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "x.png"));
+    const auto read = [&] { return readCube(scratch / "x.img").data.back() == 7; };
+    EXPECT_EQ(endingWithin(enough, read), Ending::out_of_memory);  // the negative control
+  }
+}
+
+// ---------------------------------------------------------------- headers
 
 // What a user calls a file must not end a value of the header.
 TEST(CubeIdentity, BracesAndLineBreaksStayInsideOfTheirValue) {
@@ -484,4 +584,25 @@ TEST(QuicklooksIdentity, AnAbsentComponentHasNoPictureAndFalseColoursNoBar) {
   EXPECT_GT(rgb[1][2], rgb[1][0] + 100);
   cube.header.channels[5] = "S3 650";
   EXPECT_FALSE(stokesComponents(cube.header));
+}
+
+// The end of a scale is the number that sorting finds, to the bit, although nothing is sorted.
+TEST(QuicklooksIdentity, TheStretchIsThatOfSortedMagnitudes) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<std::uint32_t> bits;
+  std::uniform_real_distribution<float> narrow(1, 1.001f);
+  for (const bool alike : {false, true})
+    for (const std::size_t count : {1u, 2u, 199u, 200u, 401u, 5000u}) {
+      Cube cube{bandHeader(count, 1, *bands, {"S0"}, ""), {}};
+      std::vector<float> finite;
+      for (std::size_t i = 0; i < count; ++i) {
+        const float v = alike ? -narrow(random) : std::bit_cast<float>(bits(random));
+        cube.data.insert(cube.data.end(), {v, 0, 0});
+        if (std::isfinite(v)) finite.push_back(std::abs(v));
+      }
+      std::ranges::sort(finite);
+      ASSERT_FALSE(finite.empty());
+      const float expected = finite[finite.size() - 1 - finite.size() / 200];
+      EXPECT_EQ(scalesOfChannel(cube, 0, "one"), (PictureScales{{"one", expected}})) << count;
+    }
 }

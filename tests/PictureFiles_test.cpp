@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,6 +53,64 @@ TEST(PictureFilesInvariant, AnyNumberOfThreadsWritesTheSameBytes) {
   floats[5] = 0.5f;
   savePicture(many, scratch / "other.exr");
   EXPECT_NE(contents(scratch / "other.exr"), contents(scratch / "1.exr"));  // negative control
+}
+
+TEST(PictureFilesIdentity, RowsMadeOneAtATimeAreThePicture) {
+  const Scratch scratch;
+  std::vector<unsigned char> pixels(7 * 5 * 3);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = static_cast<unsigned char>(i * i % 251);
+  PictureFile rows{7, 5, {"R", "G", "B"}};
+  rows.paint = [&](std::size_t y, std::span<unsigned char> row) {
+    std::copy_n(&pixels[y * row.size()], row.size(), row.begin());
+  };
+  savePicture({7, 5, {"R", "G", "B"}, pixels}, scratch / "whole.png");
+  savePicture(rows, scratch / "rows.png");
+  EXPECT_EQ(contents(scratch / "rows.png"), contents(scratch / "whole.png"));
+  pixels[9] ^= 1;
+  savePicture(rows, scratch / "other.png");
+  EXPECT_NE(contents(scratch / "other.png"), contents(scratch / "whole.png"));
+  rows.paint = [](std::size_t y, std::span<unsigned char>) {
+    if (y == 3) throw std::runtime_error("no fourth row");
+  };
+  EXPECT_THROW(savePicture(rows, scratch / "half.png"), InputError);
+  EXPECT_EQ(filesBelow(scratch.path), 3u);
+}
+
+TEST(PictureFilesIdentity, ChannelsMayLieApart) {
+  const Scratch scratch;
+  const std::vector<float> by_pixel{1, 10, 2, 20, 3, 30, 4, 40, 5, 50, 6, 60},  // 3 x 2
+      by_line{1, 2, 3, 10, 20, 30, 4, 5, 6, 40, 50, 60},
+      by_channel{1, 2, 3, 4, 5, 6, 10, 20, 30, 40, 50, 60};
+  PictureFile picture{3, 2, {"A", "B"}, {}, by_pixel};
+  savePicture(picture, scratch / "pixel.exr");
+  picture.floats = by_line, picture.steps = {1, 6, 3};
+  savePicture(picture, scratch / "line.exr");
+  picture.floats = by_channel, picture.steps = {1, 3, 6};
+  savePicture(picture, scratch / "channel.exr");
+  EXPECT_EQ(contents(scratch / "line.exr"), contents(scratch / "pixel.exr"));
+  EXPECT_EQ(contents(scratch / "channel.exr"), contents(scratch / "pixel.exr"));
+  picture.steps = {1, 6, 3};  // the negative control
+  savePicture(picture, scratch / "wrong.exr");
+  EXPECT_NE(contents(scratch / "wrong.exr"), contents(scratch / "pixel.exr"));
+}
+
+TEST(PictureFilesIdentity, WidePicturesHaveFewerThreads) {
+  EXPECT_EQ(threadsOfEXR(256, 12, 16), 16);
+  EXPECT_EQ(threadsOfEXR(4096, 1600, 16), 1);
+  EXPECT_EQ(memoryOfEXR(4096, 1600, 1), 3 * 16 * 4096 * 1600 * 4.0);
+  const int threads = threadsOfEXR(20000, 32, 64);
+  EXPECT_GT(threads, 1);
+  EXPECT_LE(memoryOfEXR(20000, 32, threads), 1e9);
+  EXPECT_GT(memoryOfEXR(20000, 32, threads + 1), 1e9);
+}
+
+// One of 2.2 gigabytes for sixteen rows ended the program by a signal.
+TEST(PictureFilesIdentity, RowsThatOpenEXRCannotCountAreRefused) {
+  const Scratch scratch;
+  const std::vector<float> row(most_row_numbers_of_EXR + 1);
+  EXPECT_THROW(savePicture({row.size(), 1, {"R"}, {}, row}, scratch / "x.exr"), InputError);
+  EXPECT_EQ(filesBelow(scratch.path), 0u);
 }
 
 // PNG (ISO/IEC 15948): signature, then the chunk IHDR with width, height, bits a channel and colour type 2 for RGB.

@@ -1,7 +1,6 @@
 // The door for cubes: the header of an ENVI cube up to a byte that is zero, and its numbers behind it.
-#include "malus/files/Cube.hpp"
-
 #include "Door.hpp"
+#include "malus/files/CubeView.hpp"
 #include "malus/files/Quicklooks.hpp"
 
 using namespace malus;
@@ -16,6 +15,7 @@ MALUS_DOOR(cube) {
     const Cube cube = readCube(path);
     const CubeHeader& h = cube.header;
     if (cube.data.size() != h.width * h.height * h.channels.size()) std::abort();
+    if (openCube(path).numbers().size() != cube.data.size()) std::abort();
     stokesComponents(h);
   });
 }
