@@ -17,6 +17,7 @@ import tempfile
 import time
 
 import numpy as np
+import numpy.typing as npt
 
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "chunky-bar-copper.json"
 TURNS = 5
@@ -50,7 +51,7 @@ def render(malus: str, path: pathlib.Path) -> tuple[float, float]:
     return seconds, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def s0(path: pathlib.Path) -> np.ndarray:
+def s0(path: pathlib.Path) -> npt.NDArray[np.float64]:
     cube = np.fromfile(path.with_suffix("") / f"{path.stem}.img", "<f4")
     return cube.reshape(-1, 4)[:, 0].astype(float)
 
