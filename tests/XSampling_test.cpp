@@ -46,7 +46,7 @@ TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
   const auto again =
       measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32, .only = "sobol"});
-  ASSERT_EQ(once.size(), 6u);
+  ASSERT_EQ(once.size(), 7u);
   ASSERT_EQ(again.size(), 2u);
   EXPECT_EQ(once[4].sampler, "sobol");
   EXPECT_EQ(once[4].errors, again[0].errors);

@@ -6,7 +6,7 @@
 
 using namespace malus;
 
-// What is counted and drawn must hold; what is timed must have been timed, and is judged by nobody here.
+// What is counted and drawn must hold. Nothing is timed.
 TEST(XSpeedInvariant, TheSameWorkAndTheSamePicture) {
   const Item item = ran("C5");
   auto verdicts = verdictsOf(item);
@@ -17,5 +17,5 @@ TEST(XSpeedInvariant, TheSameWorkAndTheSamePicture) {
   auto values = valuesOf(item);
   EXPECT_GT(std::stod(values["polarized"]), 2)
       << "negative control: polarised light is more numbers";
-  EXPECT_GT(std::stod(values["ratio"]), 0);
+  EXPECT_EQ(values.count("ratio"), 0u) << "a clock would make every copy of the book another";
 }
