@@ -277,6 +277,105 @@ TEST(AccuracyIdentity, TheRecordTellsWhereTheAimWasMissed) {
     EXPECT_LE(truth.data[p * channels.size() + rays], 2200) << "a tenth for rays that vary";
 }
 
+// The example of the chapter: 4 tiles left, 10 seconds, 1 for first batches, 3 wanted for the rest.
+TEST(AccuracyIdentity, TimeIsDealtByHand) {
+  double now = 0;
+  TimeLimit limit(14, 6, 1, [&] { return now; });
+  limit.leaveOut(1);
+  now = 1;
+  EXPECT_DOUBLE_EQ(limit.grant(1, {1.5, 1.5})[0], (14 - 1 - 4 * 1) / 2.0 / (5 * 1.5))
+      << "nothing is known of the others but this one";
+  now = 4;
+  for (const double part : limit.grant(1, {1.5, 1.5})) EXPECT_DOUBLE_EQ(part, 7.0 / 12);
+  now = 20;
+  EXPECT_EQ(limit.grant(1, {1, 1}), (std::array{0.0, 0.0})) << "too late";
+  TimeLimit two(14, 5, 2, [&] { return 4.0; });
+  EXPECT_EQ(two.grant(1, {1.5, 1.5}), (std::array{1.0, 1.0})) << "28 seconds of two threads";
+}
+
+namespace {
+/// Seconds that tiles take of one thread whose time is limited, in this order.
+double secondsOf(const std::vector<double>& wishes, double limit_s) {
+  double now = 0;
+  TimeLimit limit(limit_s, wishes.size(), 1, [&] { return now; });
+  for (const double wish : wishes) {
+    now += 1;
+    const auto part = limit.grant(1, {wish / 2, wish / 2});
+    now += (part[0] + part[1]) * wish / 2;
+  }
+  return now;
+}
+}  // namespace
+
+// A picture whose upper half is ten times as difficult as its lower one.
+TEST(AccuracyInvariant, ScatteredTilesUseTheTimeThatThereIs) {
+  std::vector<double> wishes(400, 20);
+  std::fill_n(wishes.begin() + 200, 200, 2.0);
+  const std::vector<double> mixed = scattered(wishes);
+  const double all = 400 + 200 * 20 + 200 * 2;
+  EXPECT_DOUBLE_EQ(secondsOf(mixed, 2 * all), all) << "enough for every wish";
+  for (const double limit : {600.0, 1200.0, 2400.0})
+    EXPECT_NEAR(secondsOf(mixed, limit) / limit, 1, 0.02);
+  EXPECT_LT(secondsOf(wishes, 2400) / 2400, 0.9)
+      << "negative control: row by row, time is left";
+  EXPECT_EQ(secondsOf(mixed, 100), 400) << "first batches are not cut";
+}
+
+// The pixels of the test above, in tiles of 250 that get half of the batches that they want.
+TEST(AccuracyInvariant, TimeThatLacksLeavesTheMeanWhereItIs) {
+  std::mt19937_64 engine(2);
+  std::uniform_real_distribution<double> uniform;
+  const Aim aim{Aim::Of::s0, 0.15};
+  const auto meanOf = [&](bool crossed) {
+    Pixels made;
+    double now = 0;
+    TimeLimit limit(4'000'000, 400, 1, [&] { return now; });
+    for (int tile = 0; tile < 400; ++tile) {
+      std::vector<HalvedMeans> means(250, HalvedMeans(1, first));
+      const auto add = [&](HalvedMeans& pixel, std::size_t b) {
+        pixel.add(b, std::array{uniform(engine) < 0.05 ? 10.0 : 1.0, 0.0, 0.0, 0.0}, 1);
+        now += 1;
+      };
+      std::vector<std::array<std::size_t, 2>> needed;
+      for (HalvedMeans& pixel : means) {
+        for (std::size_t b = 0; b < first; ++b) add(pixel, b);
+        needed.push_back(neededOf(pixel, aim));
+        if (!crossed) std::swap(needed.back()[0], needed.back()[1]);
+      }
+      const auto wanted = needed;
+      cutToTime(limit, 250 * first, first, 250, needed);
+      for (std::size_t p = 0; p < 250; ++p) {
+        EXPECT_LE(needed[p][0], wanted[p][0]);
+        EXPECT_GE(needed[p][0], std::min(wanted[p][0], first / 2));
+        for (std::size_t b = first; b < 2 * std::max(needed[p][0], needed[p][1]); ++b)
+          if (b / 2 < needed[p][b % 2]) add(means[p], b);
+        made.add(means[p].mean(0), means[p].errors(0).standard[0], 0);
+      }
+    }
+    EXPECT_NEAR(now / 4e6, 1, 0.03) << "the time was short and is used";
+    return (made.mean() - 1.45) / made.error();
+  };
+  EXPECT_LT(std::abs(meanOf(true)), 4.5);
+  EXPECT_GT(std::abs(meanOf(false)), 10) << "negative control";
+}
+
+// With no time at all every pixel has its first batches, and with a year nothing is cut.
+TEST(AccuracyInvariant, MinutesCutBatchesAndNothingElse) {
+  const Workplace place(copper());
+  const std::string render = "render s.json --until 2% --batches 8 --write cube,truth,error ";
+  for (const auto& [at_most, out] : {std::pair{"1", "first"},
+                                     {"1e-9min", "none"},
+                                     {"3000", "all"},
+                                     {"3000,100000min", "year"}})
+    ASSERT_EQ(place.malus(render + fmt::format("--at-most {} --out {}", at_most, out)).code, 0);
+  EXPECT_EQ(place.file("first/s.img"), place.file("none/s.img"));
+  EXPECT_EQ(place.file("first/s.error.img"), place.file("none/s.error.img"));
+  EXPECT_EQ(place.file("all/s.img"), place.file("year/s.img"));
+  EXPECT_NE(place.file("all/s.img"), place.file("none/s.img")) << "negative control";
+  EXPECT_EQ(json::parse(place.file("none/s.run.json"))["until"]["most_minutes"], 1e-9);
+  EXPECT_NE(place.file("none/s.img.hdr").find("in 1e-09 minutes"), std::string::npos);
+}
+
 TEST(AccuracyIdentity, WhatCannotBeIsRefusedWithTheRemedy) {
   const Workplace place(copper());
   json grid = copper();
@@ -293,6 +392,14 @@ TEST(AccuracyIdentity, WhatCannotBeIsRefusedWithTheRemedy) {
       {"s.json --until 1% --batches 9", "give an even number from 8 on"},
       {"s.json --until 1% --at-most 0", "--at-most = 0: is no number of rays"},
       {"s.json --at-most 100", "--at-most = 100: is of no use without --until"},
+      {"s.json --until 1% --at-most 0min",
+       "--at-most = 0min: is no time to render in; give min"},
+      {"s.json --until 1% --at-most xmin", "--at-most"},
+      {"s.json --until 1% --at-most infmin", "--at-most"},
+      {"s.json --until 1% --at-most 1min,2min",
+       "limits the same twice; give one number of rays"},
+      {"s.json --until 1% --at-most 3,4", "limits the same twice"},
+      {"s.json --until 1% --at-most 10m", "--at-most = 10m: is no number of rays"},
       {"grid.json --until 1%",
        "--until = 1%: would err alike in each batch, because the "
        "scene's sampling is grid-rotated; set radiometry.sampling"}};

@@ -11,6 +11,7 @@
 
 #include "Program.hpp"
 #include "malus/app/CommandRender.hpp"
+#include "malus/app/SceneDescription.hpp"
 #include "malus/base/Error.hpp"
 #include "malus/files/SceneReader.hpp"
 #include "malus/render/Renderer.hpp"

@@ -76,7 +76,7 @@ def _word(value: object) -> str:
 
 def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iterable[int] | None = None,
            tile: Sequence[int] | None = None, seed: int | None = None, batches: int | None = None,
-           until: float | str | None = None, at_most: int | None = None, threads: int = 0,
+           until: float | str | None = None, at_most: int | str | None = None, threads: int = 0,
            base: str | os.PathLike[str] | None = None, progress: bool | Watcher = False) -> xr.Dataset:
     """Polarimetric pictures of a scene, in memory.
 
@@ -95,8 +95,9 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
     until : float or str, optional
         How large the standard error may be: of S0 relative to it (0.01, "1%"), or of the DoLP ("dolp=0.002"). Each pixel gets the
         batches that it needs after the first 32, or `batches`.
-    at_most : int, optional
-        With `until`, rays of a pixel at most; 100000 if not given.
+    at_most : int or str, optional
+        With `until`, rays of a pixel at most, 100000 if not given; "10min": minutes of the call; "100000,10min": both. With minutes the
+        picture depends on the machine.
     threads : int
         0 for all processors. The numbers do not depend on it.
     base : path, optional
