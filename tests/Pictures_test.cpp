@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -200,4 +202,53 @@ TEST(PicturesIdentity, TopsAndSidesAreToldByName) {
   EXPECT_EQ(found, (std::array{4, 16, 1}));  // four chunks of five faces, and the ground
   EXPECT_FALSE(isOfChunks("1"));             // negative control
   for (const char* top : chunk_tops) EXPECT_TRUE(isTop(top) && !isSide(top) && isOfChunks(top));
+}
+
+namespace {
+const std::vector<std::string> scenes_with_mirrors{"varnish", "copper-bowl", "canyon"};
+
+Scene small(const std::string& name, nlohmann::json patch = {}) {
+  patch["sensor"]["width"] = patch["sensor"]["height"] = 32;
+  return shippedScene(name, patch.dump());
+}
+}  // namespace
+
+// Sun and sky reach every surface in sight, and no light is polarised more than wholly (gathered in single precision).
+TEST(PicturesInvariant, SurfacesOfScenesWithMirrorsAreLit) {
+  for (const std::string& name : scenes_with_mirrors) {
+    Scene scene = small(name);
+    std::size_t surfaces = 0, polarized = 0;
+    for (const StokesImage& band : renderBands(scene))
+      for (std::size_t i = 0; i < band.size(); ++i) {
+        if (band.facet[i] == StokesImage::nothing) continue;
+        const double s0 = band.stokes[0][i],
+                     part = std::hypot(band.stokes[1][i], band.stokes[2][i], band.stokes[3][i]);
+        ASSERT_GT(s0, 0) << name << " " << i;
+        ASSERT_LE(part, s0 * (1 + 1e-5)) << name << " " << i;
+        ++surfaces, polarized += part > 0.05 * s0;
+      }
+    EXPECT_GT(surfaces, 1000u) << name;
+    EXPECT_GT(polarized, surfaces / 20) << name;
+    scene.world.sun.reset(), scene.world.sky = blackSky(scene.world.grid);
+    const StokesImage night = renderImage(scene);
+    EXPECT_EQ(*std::ranges::max_element(night.stokes[0]), 0) << "negative control, " << name;
+  }
+}
+
+// What the bowl gathers on the floor: the brightest place of it against the floor as a whole. The control's bowl is matt.
+TEST(PicturesInvariant, TheCausticOfTheBowlIsBrighterThanTheFloorBeside) {
+  const auto contrast = [](nlohmann::json patch) {
+    patch["radiometry"] = {{"rays", {513, 1}}};
+    const StokesImage picture = renderImage(small("copper-bowl", patch));
+    std::vector<double> floor;
+    for (const std::size_t pixel : insideOf(picture, "floor"))
+      floor.push_back(picture.stokes[0][pixel]);
+    std::ranges::sort(floor);
+    // the mean of the brightest five, against the median
+    return std::accumulate(floor.end() - 5, floor.end(), 0.0) / 5 / floor[floor.size() / 2];
+  };
+  EXPECT_GT(contrast({}), 2);
+  nlohmann::json matt{{"model", "lambertian"}, {"reflectance", 0.9}};
+  for (const char* key : {"optical_constants", "sigma"}) matt[key] = nullptr;
+  EXPECT_LT(contrast({{"materials", {{"copper", matt}}}}), 1.5) << "negative control";
 }

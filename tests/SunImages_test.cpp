@@ -10,6 +10,8 @@
 #include "ChiSquared.hpp"
 #include "Worlds.hpp"
 #include "malus/base/Random.hpp"
+#include "malus/render/Renderer.hpp"
+#include "malus/thesis/XSampling.hpp"
 
 using namespace malus;
 using namespace malus::testing;
@@ -139,6 +141,23 @@ TEST(SunImagesIdentity, BunchesAreDrawnWithTheirDensity) {
   EXPECT_LT(count(cut, wrong).p_value, 1e-4) << "negative control";
 }
 
+// What a bunch is made with is what the cut to its ends computes.
+TEST(SunImagesIdentity, ABunchIsMadeWholeAndTurnsInItself) {
+  Bunch cut = slanted(), turned = slanted();
+  ASSERT_TRUE(cut.cut({-5, 5}, {-5, 5}));
+  EXPECT_DOUBLE_EQ(cut.kept(), slanted().kept());
+  turned.turn(std::cos(0.7), std::sin(0.7));
+  EXPECT_GT((turned.u() - slanted().u()).getLength(), 0.1);
+  for (const auto& [a, b] : {std::pair{0.3, -1.2}, {2.0, 0.1}, {-1.5, 2.5}}) {
+    const CDVector at = normalized(slanted().axis() + slanted().u() * a + slanted().v() * b);
+    const double density = slanted().density(at);
+    EXPECT_NEAR(cut.density(at), density, 1e-12 * density);
+    EXPECT_NEAR(turned.density(at), density, 1e-12 * density);
+  }
+  ASSERT_TRUE(cut.cut({-5, 4}, {-5, 5}));
+  EXPECT_LT(cut.kept(), slanted().kept() - 1e-5) << "negative control";
+}
+
 TEST(SunImagesIdentity, ACutThatLeavesNothingIsNoBunch) {
   Bunch bunch = slanted();
   EXPECT_FALSE(bunch.cut({4.5, 6}, {-1, 1}));
@@ -238,4 +257,33 @@ TEST(SunImagesInvariant, TooManyMirrorsAreNotLookedAt) {
   };
   EXPECT_EQ(mean(many, true), mean(many, false));
   EXPECT_NE(mean(few, true), mean(few, false));  // negative control
+}
+
+// The bowl has more facets than are looked at, and the bits of a picture without images; the others have not.
+TEST(SunImagesInvariant, ShippedScenesAreLookedAtAsTheyShould) {
+  const auto bits = [](Scene scene, bool images) {
+    scene.radiometry.images = images;
+    return renderScene(scene).stokes;
+  };
+  for (const auto& [name, mirrors] :
+       {std::pair{"varnish", 2u}, {"copper-bowl", 0u}, {"canyon", 8u}}) {
+    const Scene scene = sceneWithMirrors(name, 16);
+    EXPECT_EQ(SunImages(scene.world).mirrors(), mirrors) << name;
+    EXPECT_EQ(bits(scene, true) == bits(scene, false), mirrors == 0) << name;
+  }
+}
+
+// Two scenes, four components: five standard errors of 32 pictures are a false alarm in a thousand runs at most (the
+// deviations are Student's with about 60 degrees of freedom).
+TEST(SunImagesInvariant, ShippedScenesHaveTheMeansOfThoseWithoutImages) {
+  for (const char* name : {"varnish", "canyon"}) {
+    Scene scene = sceneWithMirrors(name, 16);
+    const ImagesTrial without = tryImages(scene, false, 32), with = tryImages(scene, true, 32);
+    EXPECT_LT(deviation(without, with), 5) << name;
+    EXPECT_LT(with.picture, without.picture) << name;
+    EXPECT_LT(with.pixels, without.pixels) << name;
+    scene.world.sun->irradiance *= 1.05;
+    EXPECT_GT(deviation(without, tryImages(scene, true, 32)), 5)
+        << "negative control: a brighter sun, " << name;
+  }
 }

@@ -41,6 +41,21 @@ TEST(XSamplingRegression, OrderOfTheSamplings) {
   }
 }
 
+// Images of the sun help in a scene that they are not made for, and leave the bowl alone: its errors are those of other
+// seeds, of which 16 tell a standard deviation to a fifth in each pixel, and much better in the mean of all.
+TEST(XSamplingRegression, ImagesHelpInScenesWithOtherMirrors) {
+  auto values = valuesOf(measured());
+  const auto ratio = [&](const std::string& scene, const std::string& of) {
+    return std::stod(values[scene + ".with" + of]) / std::stod(values[scene + ".without" + of]);
+  };
+  for (const std::string of : {"", ".pixels"}) {
+    for (const std::string scene : {"chunky-bar-copper", "varnish", "canyon"})
+      EXPECT_LT(ratio(scene, of), 0.75) << scene << of;
+    EXPECT_NEAR(ratio("copper-bowl", of), 1, 0.15) << of << ", negative control";
+  }
+  EXPECT_LT(std::stod(values["apart"]), 5);
+}
+
 // The same seed makes the same picture, so errors are equal to the last bit; time is not asked.
 TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
@@ -50,7 +65,7 @@ TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   ASSERT_EQ(again.size(), 2u);
   EXPECT_EQ(once[4].sampler, "sobol");
   EXPECT_EQ(once[4].errors, again[0].errors);
-  EXPECT_EQ(once[6].errors[0], 0) << "the reference against itself";
+  EXPECT_EQ(once.back().errors[0], 0) << "the reference against itself";
   EXPECT_NE(once[0].errors, again[0].errors) << "negative control: random directions";
 }
 

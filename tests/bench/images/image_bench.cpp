@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "BareImage.hpp"
+#include "Scenes.hpp"
 #include "malus/air/RayleighSky.hpp"
 #include "malus/render/Radiometry.hpp"
 #include "malus/render/Scene.hpp"
@@ -266,5 +267,6 @@ int main(int argc, char** argv) {
   runDisk({"(e) 91 rays, the sun a disk or a point", bar, 1, {91}, 4});
   runDisk({"(e) the same, and at the second hit", bar, 1, {91, 1}, 4});
   run({"(d) a million triangles, 91 rays, 1 band", waves(710), 1, {91}, 16});
+  if (only.empty() || only == "scenes") printScenes();
   return 0;
 }

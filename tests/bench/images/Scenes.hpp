@@ -1,0 +1,3 @@
+// What images of the sun bring in scenes of several kinds.
+#pragma once
+void printScenes();
