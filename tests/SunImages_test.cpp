@@ -279,11 +279,11 @@ TEST(SunImagesInvariant, ShippedScenesHaveTheMeansOfThoseWithoutImages) {
   for (const char* name : {"varnish", "canyon"}) {
     Scene scene = sceneWithMirrors(name, 16);
     const ImagesTrial without = tryImages(scene, false, 32), with = tryImages(scene, true, 32);
-    EXPECT_LT(deviation(without, with), 5) << name;
+    EXPECT_LT(standardErrorsApart(without, with), 5) << name;
     EXPECT_LT(with.picture, without.picture) << name;
     EXPECT_LT(with.pixels, without.pixels) << name;
     scene.world.sun->irradiance *= 1.05;
-    EXPECT_GT(deviation(without, tryImages(scene, true, 32)), 5)
+    EXPECT_GT(standardErrorsApart(without, tryImages(scene, true, 32)), 5)
         << "negative control: a brighter sun, " << name;
   }
 }

@@ -30,7 +30,7 @@ void printScenes() {
     };
     fmt::print(" {:7.2f} {:7.2f} {:7.2f} {:7.1f}\n", ratio(&ImagesTrial::picture),
                ratio(&ImagesTrial::pixels), ratio(&ImagesTrial::median),
-               deviation(without, with));
+               standardErrorsApart(without, with));
   }
   fmt::print(
       "error: standard deviation of S0, rms over the surfaces, over their mean (picture) or "
