@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "malus/base/Angles.hpp"
@@ -95,6 +96,59 @@ TEST(RayleighSkyInvariant, ManyDirectionsAtOnceAreTheSameLight) {
     EXPECT_LT(worst, 1e-5) << zenith_deg;
     if (zenith_deg > 0) {
       EXPECT_GT(mirrored, 0.1);  // control
+    }
+  }
+}
+
+// A sky that has no radiances() of its own.
+class OneByOne final : public Sky {
+ public:
+  explicit OneByOne(const Sky& sky) : Sky(sky.grid()), sky_(sky) {}
+  void radiance(const CDVector& to_sky, Spectrum& out) const override {
+    sky_.radiance(to_sky, out);
+  }
+  bool polarized() const override { return true; }
+  std::string description() const override { return "one by one"; }
+
+ private:
+  const Sky& sky_;
+};
+
+// The sky's own loop over eights of bands and the plain one against rotate(), eq 3.48 of the thesis; the
+// tolerance is that of the test above.
+TEST(RayleighSkyInvariant, ManyDirectionsAreTurnedAsOneIs) {
+  for (const std::size_t bands : {1, 2, 7, 8, 9, 100}) {
+    std::vector<double> nm;
+    for (std::size_t b = 0; b < bands; ++b) nm.push_back(400 + 3.0 * static_cast<double>(b));
+    const auto many = SpectralGrid::make(nm);
+    const Sun sun{compassDirection(40 * degree, 1), Spectrum(many, 1.0)};
+    const RayleighSky sky(sun, RayleighSky::clearAir(many, 0.3));
+    const OneByOne plain(sky);
+    std::vector<float> x, y, z, c, s;
+    for (int i = 0; i < 70;
+         ++i) {  // a portion of 64 and a rest; one direction below the horizon
+      const CDVector d = CDVector::fromAngles(std::acos((i + 0.5) / 70 - 0.01), 2.4 * i);
+      x.push_back(static_cast<float>(d.x)), y.push_back(static_cast<float>(d.y));
+      z.push_back(static_cast<float>(d.z));
+      c.push_back(static_cast<float>(std::cos(0.7 * i))),
+          s.push_back(static_cast<float>(std::sin(0.7 * i)));
+    }
+    for (const Sky* asked : {static_cast<const Sky*>(&sky), static_cast<const Sky*>(&plain)}) {
+      std::vector<float> out(x.size() * 4 * bands);
+      asked->radiances({x.size(), x.data(), y.data(), z.data(), c.data(), s.data()}, out);
+      double worst = 0, opposite = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        Spectrum one = ask(sky, normalized({x[i], y[i], z[i]})), other = one;
+        one.rotate(c[i], s[i]), other.rotate(c[i], -s[i]);
+        for (std::size_t b = 0; b < bands; ++b) {
+          const float* at = &out[4 * i * bands + b];
+          const CDStokesVector got(at[0], at[bands], at[2 * bands], at[3 * bands]);
+          worst = std::max(worst, distance(got, one[b]) / one[b].getScalar());
+          opposite = std::max(opposite, distance(got, other[b]) / one[b].getScalar());
+        }
+      }
+      EXPECT_LT(worst, 1e-5) << bands << " bands, " << asked->description();
+      EXPECT_GT(opposite, 0.1);  // control
     }
   }
 }

@@ -123,6 +123,96 @@ __attribute__((noinline)) void addBands(const Facet& g, float w, std::size_t n,
     for (std::size_t j = 0; j < n; ++j) out[j] += f0 * fresnel(g.c, g.s2, e1[j], e2[j]).sum;
 }
 
+// The Rayleigh sky: of every direction four weights of the table's nodes and the factors of its functions in S0, S1, S2 in
+// the surface's frame, which are the same for all bands.
+struct SkyAims {
+  int first[most];
+  alignas(64) float w0[most], w1[most], w2[most], w3[most];
+  alignas(64) float b0[most], d0[most], q1[most], b1[most], d1[most], q2[most], b2[most],
+      d2[most];
+};
+struct Directions {
+  alignas(64) std::array<float, most> x, y, z;
+};
+__attribute__((noinline)) void aimAt(const Directions& d, int count, V n, V sun, SkyAims& a) {
+  const float level = 1 / std::sqrt(sun.x * sun.x + sun.y * sun.y);
+  const float sx = sun.x * level, sy = sun.y * level;
+  for (int i = 0; i < count; ++i) {
+    const float x = d.x[i], y = d.y[i], z = d.z[i], mu = std::max(z, 0.0f);
+    const float sine2 = x * x + y * y + 1e-30f, sine = std::sqrt(sine2), scale = 1 / sine;
+    const float c = (x * sx + y * sy) * scale, s = (x * sy - y * sx) * scale,
+                c2 = c * c - s * s;
+    const float p = std::sqrt(mu) * Scene::rayleigh_steps;
+    const int first = std::min(std::max(int(p) - 1, 0), Scene::rayleigh_steps - 3);
+    const float u = p - float(first), u1 = u - 1, u2 = u - 2, u3 = u - 3;
+    a.first[i] = first, a.w0[i] = u1 * u2 * u3 * (-1 / 6.f), a.w1[i] = u * u2 * u3 * 0.5f,
+    a.w2[i] = u * u1 * u3 * -0.5f, a.w3[i] = u * u1 * u2 * (1 / 6.f);
+    const float tc = n.z - (n.x * x + n.y * y + n.z * z) * z, ts = n.y * x - n.x * y;
+    const float over = 1 / (tc * tc + ts * ts + 1e-30f);
+    const float cos2 = (tc * tc - ts * ts) * over, sin2 = 2 * tc * ts * over;
+    const float once = 2 * mu * sine * c, twice = (1 + mu * mu) * c2, ub = 2 * sine * s,
+                ud = 4 * mu * s * c;
+    a.b0[i] = once, a.d0[i] = -sine2 * c2, a.q1[i] = cos2 * sine2,
+    a.b1[i] = sin2 * ub - cos2 * once, a.d1[i] = sin2 * ud - cos2 * twice,
+    a.q2[i] = -sin2 * sine2, a.b2[i] = cos2 * ub + sin2 * once,
+    a.d2[i] = cos2 * ud + sin2 * twice;
+  }
+}
+// sum += weight S0 of `eights` times eight bands
+__attribute__((noinline)) void addS0(const SkyAims& a, int i, const float* __restrict n,
+                                     std::size_t row, std::size_t eights, float weight,
+                                     float* __restrict sum) {
+  for (std::size_t e = 0; e < eights; ++e, n += 32, sum += 8)
+    for (int k = 0; k < 8; ++k) {
+      const auto at = [&](int f) {
+        const float* p = n + 8 * f + k;
+        return a.w0[i] * p[0] + a.w1[i] * p[row] + a.w2[i] * p[2 * row] + a.w3[i] * p[3 * row];
+      };
+      sum[k] += weight * (at(0) + a.b0[i] * at(2) + a.d0[i] * at(3));
+    }
+}
+__attribute__((noinline)) void stokes(const SkyAims& a, int i, const float* __restrict n,
+                                      std::size_t row, std::size_t eights, float* __restrict s0,
+                                      float* __restrict s1, float* __restrict s2) {
+  for (std::size_t e = 0; e < eights; ++e, n += 32, s0 += 8, s1 += 8, s2 += 8)
+    for (int k = 0; k < 8; ++k) {
+      const auto at = [&](int f) {
+        const float* p = n + 8 * f + k;
+        return a.w0[i] * p[0] + a.w1[i] * p[row] + a.w2[i] * p[2 * row] + a.w3[i] * p[3 * row];
+      };
+      const float P = at(0), Q = at(1), B = at(2), D = at(3);
+      s0[k] = P + a.b0[i] * B + a.d0[i] * D;
+      s1[k] = a.q1[i] * Q + a.b1[i] * B + a.d1[i] * D;
+      s2[k] = a.q2[i] * Q + a.b2[i] * B + a.d2[i] * D;
+    }
+}
+// one band: the functions of a node lie side by side
+void stokesOfOneBand(const SkyAims& a, int count, const float* table, float* __restrict s0,
+                     float* __restrict s1, float* __restrict s2) {
+  for (int i = 0; i < count; ++i) {
+    const float* n = table + 4 * a.first[i];
+    float f[4];
+    for (int k = 0; k < 4; ++k)
+      f[k] = a.w0[i] * n[k] + a.w1[i] * n[4 + k] + a.w2[i] * n[8 + k] + a.w3[i] * n[12 + k];
+    s0[i] = f[0] + a.b0[i] * f[2] + a.d0[i] * f[3];
+    s1[i] = a.q1[i] * f[1] + a.b1[i] * f[2] + a.d1[i] * f[3];
+    s2[i] = a.q2[i] * f[1] + a.b2[i] * f[2] + a.d2[i] * f[3];
+  }
+}
+__attribute__((noinline)) void addStokes(const Facet& g, float w, std::size_t n,
+                                         const float* __restrict e1, const float* __restrict e2,
+                                         const float* __restrict s0, const float* __restrict s1,
+                                         const float* __restrict s2, float* __restrict out) {
+  const float f0 = g.factor * w, c = f0 * g.cos2r, s = f0 * g.sin2r;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Four q = fresnel(g.c, g.s2, e1[j], e2[j]);
+    const float u1 = g.cos2i * s1[j] + g.sin2i * s2[j], u2 = g.cos2i * s2[j] - g.sin2i * s1[j];
+    const float v1 = q.diff * s0[j] + q.sum * u1, v2 = q.re * u2;
+    out[j] += f0 * (q.sum * s0[j] + q.diff * u1), out[n + j] += c * v1 + s * v2,
+        out[2 * n + j] += c * v2 - s * v1, out[3 * n + j] -= f0 * q.im * u2;
+  }
+}
+
 struct Ray16 {
   alignas(64) std::array<int, 16> valid;
   RTCRayHit16 q;
@@ -174,8 +264,13 @@ class Renderer {
     alignas(64) float weight[most];
     const bool deeper = level == 0 && rays2_ > 0;
     Ray16 rays;
+    Directions to_sky;
     for (int i = 0; i < h.count; i += 16) {
       rays.fill(h, i, f, hit.point);
+      if (!s_.rayleigh.empty())
+        for (int k = 0; k < 16; ++k)
+          to_sky.x[i + k] = rays.q.ray.dir_x[k], to_sky.y[i + k] = rays.q.ray.dir_y[k],
+                       to_sky.z[i + k] = rays.q.ray.dir_z[k];
       if (deeper)
         rtcIntersect16(rays.valid.data(), s_.embree, &context_, &rays.q);
       else
@@ -188,7 +283,10 @@ class Renderer {
           addSurface(rays, k, h, i + k, f, r, m, random, out);
       }
     }
-    addSky(h, weight, r, m, out);
+    if (s_.rayleigh.empty())
+      addSky(h, weight, r, m, out);
+    else
+      addRayleigh(h, to_sky, f, weight, r, m, out);
   }
 
  private:
@@ -201,11 +299,64 @@ class Renderer {
     rtcOccluded1(s_.embree, &context_, &q);
     if (q.tfar < 0) return;
     if (m.sigma == 0)
-      for (std::size_t j = 0; j < n_; ++j) out[j] += s_.sun * i.z * m.reflectance / pi;
+      for (std::size_t j = 0; j < n_; ++j) out[j] += s_.sun[j] * i.z * m.reflectance / pi;
     else
-      addBands(facet(i.x, i.y, i.z, r, 1 / (2 * m.sigma * m.sigma),
-                     1 / (8 * pi * m.sigma * m.sigma)),
-               s_.sun * i.z, n_, s_.e1.data(), s_.e2.data(), polarized_, out);
+      addSunBands(facet(i.x, i.y, i.z, r, 1 / (2 * m.sigma * m.sigma),
+                        1 / (8 * pi * m.sigma * m.sigma)),
+                  i.z, out);
+  }
+  void addSunBands(const Facet& g, float cosine, float* out) {
+    light_.assign(3 * n_, 0);
+    addBands(g, cosine, n_, s_.e1.data(), s_.e2.data(), polarized_, light_.data());
+    for (std::size_t k = 0; k < (polarized_ ? 3 : 1); ++k)
+      for (std::size_t j = 0; j < n_; ++j) out[k * n_ + j] += s_.sun[j] * light_[k * n_ + j];
+  }
+  void addRayleigh(const Hemisphere& h, const Directions& to_sky, const Frame& f,
+                   const float* weight, V r, const Material& m, float* out) {
+    SkyAims a;
+    aimAt(to_sky, h.count, f.z, {s_.to_sun[0], s_.to_sun[1], s_.to_sun[2]}, a);
+    if (n_ == 1) return addRayleighOneBand(h, a, weight, r, m, out);
+    const std::size_t eights = (n_ + 7) / 8, row = 32 * eights, plane = 8 * eights;
+    light_.assign(3 * plane, 0);
+    float *s0 = light_.data(), *s1 = s0 + plane, *s2 = s1 + plane;
+    const float p = 1 / (2 * m.sigma * m.sigma), norm = 1 / (8 * pi * m.sigma * m.sigma);
+    for (int i = 0; i < h.count; ++i) {
+      if (!(weight[i] > 0)) continue;
+      const float* node = &s_.rayleigh[std::size_t(a.first[i]) * row];
+      if (m.sigma == 0) {
+        addS0(a, i, node, row, eights, weight[i], s0);
+      } else {
+        stokes(a, i, node, row, eights, s0, s1, s2);
+        addStokes(facet(h.x[i], h.y[i], h.z[i], r, p, norm), weight[i], n_, s_.e1.data(),
+                  s_.e2.data(), s0, s1, s2, out);
+      }
+    }
+    if (m.sigma == 0)
+      for (std::size_t j = 0; j < n_; ++j) out[j] += m.reflectance / pi * s0[j];
+  }
+  void addRayleighOneBand(const Hemisphere& h, const SkyAims& a, const float* weight, V r,
+                          const Material& m, float* out) {
+    alignas(64) float s0[most], s1[most], s2[most], s3[most];
+    stokesOfOneBand(a, h.count, s_.rayleigh.data(), s0, s1, s2);
+    float sum[4] = {};
+    if (m.sigma == 0) {
+      for (int i = 0; i < h.count; ++i) sum[0] += weight[i] * s0[i];
+      out[0] += m.reflectance / pi * sum[0];
+      return;
+    }
+    const float p = 1 / (2 * m.sigma * m.sigma), norm = 1 / (8 * pi * m.sigma * m.sigma);
+    for (int i = 0; i < h.count; ++i) {
+      const Facet g = facet(h.x[i], h.y[i], h.z[i], r, p, norm);
+      const Four q = fresnel(g.c, g.s2, s_.e1[0], s_.e2[0]);
+      const float u1 = g.cos2i * s1[i] + g.sin2i * s2[i],
+                  u2 = g.cos2i * s2[i] - g.sin2i * s1[i];
+      const float v1 = q.diff * s0[i] + q.sum * u1, v2 = q.re * u2, w = g.factor * weight[i];
+      s0[i] = w * (q.sum * s0[i] + q.diff * u1), s1[i] = w * (g.cos2r * v1 + g.sin2r * v2),
+      s2[i] = w * (g.cos2r * v2 - g.sin2r * v1), s3[i] = -w * q.im * u2;
+    }
+    for (int i = 0; i < h.count; ++i)
+      sum[0] += s0[i], sum[1] += s1[i], sum[2] += s2[i], sum[3] += s3[i];
+    for (int k = 0; k < 4; ++k) out[k] += sum[k];
   }
   void addSurface(const Ray16& rays, int k, const Hemisphere& h, int i, const Frame& f, V r,
                   const Material& m, std::uint32_t random, float* out) {

@@ -1,5 +1,5 @@
 // What a programmer would write over Embree for one picture and no other: triangles with a copper of some roughness or
-// a matt colour, a uniform sky, a sun, and loops. The renderer is measured against these.
+// a matt colour, a uniform or a Rayleigh sky, a sun, and loops. The renderer is measured against these.
 #pragma once
 #include <embree3/rtcore.h>
 
@@ -24,7 +24,12 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<float> e1, e2;  // squared index of the copper, for each band
-  float sky = 0, sun = 0;     // radiance, irradiance
+  float sky = 0;              // radiance of the uniform sky
+  std::vector<float> sun;     // irradiance of each band
+  /// The Rayleigh sky in place of the uniform one, if not empty: of each node, even in the root of the cosine, and each
+  /// eight bands the four functions of the chapter on this sky; of a single band [node][function].
+  std::vector<float> rayleigh;
+  static constexpr int rayleigh_steps = 256;
   std::array<float, 3> to_sun{};
   RTCDevice device = nullptr;
   RTCScene embree = nullptr;

@@ -125,7 +125,7 @@ std::unique_ptr<Pair> makePair(const Shape& shape, std::size_t bands, bool polar
     pair->bare.vertices.push_back({float(v.x), float(v.y), float(v.z)});
   for (const Triangle& t : pair->world.geometry.triangles())
     pair->bare.triangles.push_back({t.a, t.b, t.c, t.material});
-  pair->bare.sky = 0.05f, pair->bare.sun = 1;
+  pair->bare.sky = 0.05f, pair->bare.sun.assign(bands, 1.0f);
   pair->bare.to_sun = {float(to_sun.x), float(to_sun.y), float(to_sun.z)};
   pair->bare.build();
   return pair;
@@ -179,21 +179,40 @@ struct Case {
   std::vector<int> rays;
   std::size_t step;  // one row in so many is rendered
   bool polarized = true, one_by_one = false;
-  bool clear_sky =
-      false;  // a Rayleigh sky, which the bare loops do not know: they render the uniform one
+  bool clear_sky = false;  // a Rayleigh sky
 };
+
+/// A Rayleigh sky for both: the bare loops get the same four functions of the zenith angle as a table.
+void putRayleighSky(Pair& pair) {
+  const Sun sun{pair.world.sun->to_sun,
+                CDSpectralVector<CDStokesVector>(pair.world.grid, CDStokesVector(1.0)), 0};
+  const auto sky =
+      std::make_shared<RayleighSky>(sun, RayleighSky::clearAir(pair.world.grid, 0.3));
+  pair.world.sky = sky, pair.world.sun = sky->sunAtGround();
+  const std::size_t bands = pair.world.grid->size(), together = bands == 1 ? 1 : 8,
+                    row = (bands + together - 1) / together * together * 4;
+  pair.bare.rayleigh.resize((bare::Scene::rayleigh_steps + 1) * row);
+  for (std::size_t b = 0; b < bands; ++b) {
+    pair.bare.sun[b] = float(std::as_const(pair.world.sun->irradiance)[b].getScalar());
+    const RayleighLight& light = sky->light(b);
+    const double e = light.polarizedFactor(), twice_q = 1 - e / 1.5;
+    for (std::size_t node = 0; node <= bare::Scene::rayleigh_steps; ++node) {
+      const double w = double(node) / bare::Scene::rayleigh_steps, mu = w * w;
+      const RayleighLight::Harmonics h = light.harmonics(mu, false);
+      float* at = &pair.bare.rayleigh[node * row + b / together * 4 * together + b % together];
+      at[0] =
+          float(e * ((1 + mu * mu) * h.a + (1 - mu * mu) * h.c) + twice_q * (2 * h.a + h.c));
+      at[together] = float(e * (h.a - h.c));
+      at[2 * together] = float(e * h.b), at[3 * together] = float(e * h.d);
+    }
+  }
+}
 
 void measure(const Case& c) {
   const auto pair = makePair(c.shape, c.bands, c.polarized);
   if (c.one_by_one)
     for (Material& m : pair->world.materials) m.brdf = std::make_shared<OneByOne>(m.brdf);
-  if (c.clear_sky) {
-    const Sun sun{pair->world.sun->to_sun,
-                  CDSpectralVector<CDStokesVector>(pair->world.grid, CDStokesVector(1.0)), 0};
-    const auto sky =
-        std::make_shared<RayleighSky>(sun, RayleighSky::clearAir(pair->world.grid, 0.3));
-    pair->world.sky = sky, pair->world.sun = sky->sunAtGround();
-  }
+  if (c.clear_sky) putRayleighSky(*pair);
   const Radiometry radiometry(pair->world, pair->tracer,
                               {.sampling = Sampling::gridRotated, .rays = c.rays});
   std::vector<double> out(pixels * 4 * c.bands);
@@ -216,9 +235,8 @@ void measure(const Case& c) {
   };
   const double scale = 1e3 * double(c.step), a = median(product) * scale,
                b = median(bare) * scale;
-  const std::string difference =
-      c.clear_sky ? "another sky" : fmt::format("{:+.2f} %", 100 * (sum / bare_sum - 1));
-  fmt::print("{:<48} {:>9.0f} {:>9.0f} {:>7.2f}   {}\n", c.name, a, b, a / b, difference);
+  fmt::print("{:<48} {:>9.0f} {:>9.0f} {:>7.2f}   {:+.2f} %\n", c.name, a, b, a / b,
+             100 * (sum / bare_sum - 1));
 }
 /// The sun as a disk beside the same sun as a point, which is all that the bare loops know.
 void measureDisk(const Case& c) {
