@@ -366,8 +366,15 @@ TEST(AccuracyInvariant, MinutesCutBatchesAndNothingElse) {
   for (const auto& [at_most, out] : {std::pair{"1", "first"},
                                      {"1e-9min", "none"},
                                      {"3000", "all"},
-                                     {"3000,100000min", "year"}})
-    ASSERT_EQ(place.malus(render + fmt::format("--at-most {} --out {}", at_most, out)).code, 0);
+                                     {"3000,100000min", "year"}}) {
+    const Outcome outcome =
+        place.malus(render + fmt::format("--at-most {} --out {}", at_most, out));
+    ASSERT_EQ(outcome.code, 0);
+    EXPECT_EQ(
+        outcome.err.find("that were allowed, since the first 8 batches") != outcome.err.npos,
+        std::string(out) == "none")
+        << outcome.err;
+  }
   EXPECT_EQ(place.file("first/s.img"), place.file("none/s.img"));
   EXPECT_EQ(place.file("first/s.error.img"), place.file("none/s.error.img"));
   EXPECT_EQ(place.file("all/s.img"), place.file("year/s.img"));

@@ -239,6 +239,32 @@ TEST(BRDFGatherIdentity, GatherEachOfLambertsSurface) {
   }
 }
 
+// Who says that it reads S0 alone must not look at the others; who does not say it looks, and the control sees that.
+TEST(BRDFGatherIdentity, WhoReadsOnlyS0LeavesTheOthersAlone) {
+  const auto grid = SpectralGrid::make({450.0, 550.0, 650.0});
+  const CDSpectralVector<double> grey(grid, 0.4);
+  const Directions from(90);
+  const auto light = unlikeLight(90, 3, 5);
+  std::vector<float> without = light;
+  for (std::size_t i = 0; i < without.size(); ++i)
+    if (i % 12 >= 3) without[i] = std::numeric_limits<float>::quiet_NaN();
+  const BRDFDiffuse matt(grey, 0), keeps(grey, 0.5);
+  const BRDFTorranceSparrow copper = mixture(3, as_thesis);
+  EXPECT_TRUE(matt.readsOnlyS0());
+  for (const CDBRDFModel* model :
+       std::initializer_list<const CDBRDFModel*>{&matt, &keeps, &copper}) {
+    CDSpectralVector<CDStokesVector> whole(model->grid()), part(model->grid());
+    model->gatherEach({0, 0, 1}, from.view(), light, whole);
+    model->gatherEach({0, 0, 1}, from.view(), without, part);
+    bool same = true;
+    for (std::size_t b = 0; b < 3; ++b)
+      for (int c = 0; c < 4; ++c)
+        same = same &&
+               CDStokesVector(part[b]).getStokes(c) == CDStokesVector(whole[b]).getStokes(c);
+    EXPECT_EQ(same, model->readsOnlyS0()) << model->name();
+  }
+}
+
 // Light for one direction less, or one number more, is a mistake of the caller, by every way to gather.
 TEST(BRDFGatherIdentity, GatherEachRefusesLightOfAnotherLength) {
   const auto grid = SpectralGrid::make({450.0, 550.0});

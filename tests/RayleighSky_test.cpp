@@ -135,7 +135,15 @@ TEST(RayleighSkyInvariant, ManyDirectionsAreTurnedAsOneIs) {
     }
     for (const Sky* asked : {static_cast<const Sky*>(&sky), static_cast<const Sky*>(&plain)}) {
       std::vector<float> out(x.size() * 4 * bands);
-      asked->radiances({x.size(), x.data(), y.data(), z.data(), c.data(), s.data()}, out);
+      const SkyDirections to_sky{x.size(), x.data(), y.data(), z.data(), c.data(), s.data()};
+      asked->radiances(to_sky, out);
+      SkyDirections for_s0 = to_sky;
+      for_s0.only_s0 = true;
+      std::vector<float> s0(out.size(), -1);
+      asked->radiances(for_s0, s0);
+      for (std::size_t i = 0; i < out.size(); ++i)
+        if (i / bands % 4 == 0) EXPECT_FLOAT_EQ(s0[i], out[i]) << i;
+      EXPECT_EQ(std::ranges::count(s0, -1) > 0, asked == &sky) << "control: less is written";
       double worst = 0, opposite = 0;
       for (std::size_t i = 0; i < x.size(); ++i) {
         Spectrum one = ask(sky, normalized({x[i], y[i], z[i]})), other = one;

@@ -60,7 +60,8 @@ def first_preview(malus: str, path: pathlib.Path) -> tuple[float, float]:
     out = path.with_suffix("")
     subprocess.run(["rm", "-rf", str(out)], check=True)
     start = time.monotonic()
-    with subprocess.Popen([malus, "render", str(path), "--out", str(out), "--progressive"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+    command = [malus, "render", str(path), "--out", str(out), "--progressive"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         while process.poll() is None and not (out / f"{path.stem}.preview.png").exists():
             time.sleep(0.002)
         seconds = time.monotonic() - start
