@@ -226,3 +226,63 @@ TEST(ScattererInvariant, ADipBetweenTheDegreesIsFound) {
   EXPECT_NE(refused(1.2).find("degrees"), std::string::npos) << refused(1.2);
   EXPECT_EQ(refused(0.8), "");  // control
 }
+
+namespace {
+/// Rayleigh's functions at so many angles, in a file; `change` may spoil the text of a row.
+std::string functions(int steps, bool falling, double mean = 1) {
+  std::string text = "angle_deg,a1,a2,a3,a4,b1,b2\n";
+  for (int i = 0; i <= steps; ++i) {
+    const double angle = 180.0 * (falling ? steps - i : i) / steps;
+    const ScatteringMatrix f = rayleighScatterer(0.03).matrix(std::cos(angle * degree));
+    text += std::to_string(angle);
+    for (const double value : {f.a1, f.a2, f.a3, f.a4, f.b1, f.b2})
+      text += "," + std::to_string(value * mean);
+    text += "\n";
+  }
+  return text;
+}
+}  // namespace
+
+// Half a degree apart, straight lines in the cosine are off by 1e-5 at most, and terms by 2 l + 1 times as much.
+TEST(ScattererInvariant, FunctionsFromAFileHaveTheirConstants) {
+  const Scatterer exact = rayleighScatterer(0.03);
+  for (const bool falling : {false, true}) {
+    const Scatterer read = Scatterer::read(tableOf(functions(360, falling)));
+    ASSERT_GE(read.terms().size(), 3u);
+    for (std::size_t l = 0; l < 3; ++l) {
+      EXPECT_NEAR(read.terms()[l].alpha1, exact.terms()[l].alpha1, 5e-5) << l;
+      EXPECT_NEAR(read.terms()[l].alpha2, exact.terms()[l].alpha2, 5e-5) << l;
+      EXPECT_NEAR(read.terms()[l].alpha4, exact.terms()[l].alpha4, 5e-5) << l;
+      EXPECT_NEAR(read.terms()[l].beta1, exact.terms()[l].beta1, 5e-5) << l;
+    }
+    for (const double c : {-1.0, -0.3, 0.9999, 1.0})
+      EXPECT_LT(apart(read.matrix(c), exact.matrix(c)), 2e-5) << c;
+    EXPECT_FALSE(read.makesCircular());
+  }
+  const Scatterer coarse = Scatterer::read(tableOf(functions(9, false)));  // control
+  EXPECT_GT(apart(coarse.matrix(0.5), exact.matrix(0.5)), 1e-3);
+  const Scatterer copy = coarse;
+  EXPECT_TRUE(copy.sameAs(coarse));
+  EXPECT_FALSE(exact.sameAs(rayleighScatterer(0.03)));
+}
+
+TEST(ScattererRefusal, FunctionsThatAreNone) {
+  const auto complaint = [](const std::string& text) {
+    try {
+      Scatterer::read(tableOf(text));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(complaint(functions(36, false, 1.01)), "");  // control: a per cent is let pass
+  EXPECT_NE(complaint(functions(36, false, 1.1)).find("mean"), std::string::npos);
+  std::string text = functions(36, false);
+  EXPECT_NE(complaint(text.substr(0, text.rfind("180."))).find("180"), std::string::npos);
+  std::string mixed = text;
+  mixed.replace(mixed.find("\n10."), 4, "\n1.");
+  EXPECT_NE(complaint(mixed).find("order"), std::string::npos) << complaint(mixed);
+  std::string strong = text;
+  strong.replace(strong.find("\n90.000000,0.7"), 14, "\n90.000000,0.3");
+  EXPECT_NE(complaint(strong).find("no particles do"), std::string::npos) << complaint(strong);
+}
