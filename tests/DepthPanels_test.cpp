@@ -34,7 +34,7 @@ double passed(int n, double t, double mu) {
 }  // namespace
 
 TEST(DepthPanelsByHand, EightPanelsOfTheExample) {
-  const DepthPanels depth({1.0}, {}, 0.1, 1);
+  const DepthPanels depth({1.0}, {}, {0.1, 1, 1});
   ASSERT_EQ(depth.panels.size(), 8u);
   EXPECT_DOUBLE_EQ(depth.panels[0].thickness, 0.0625);
   EXPECT_DOUBLE_EQ(depth.panels[2].thickness, 0.125);
@@ -43,7 +43,7 @@ TEST(DepthPanelsByHand, EightPanelsOfTheExample) {
 }
 
 TEST(DepthPanelsInvariant, EndsAreEdgesAndLayersKnown) {
-  const DepthPanels depth({0.2, 0.5, 2.0}, {0.7, 0.2}, 1e-3, 0.5);
+  const DepthPanels depth({0.2, 0.5, 2.0}, {0.7, 0.2}, {1e-3, 0.1, 0.5});
   for (const double end : {0.0, 0.2, 0.5, 0.7})
     EXPECT_NEAR(depth.panels.at(depth.edgeAt(end)).top, end, 1e-15);
   EXPECT_EQ(depth.edgeAt(2.0), depth.panels.size());
@@ -59,7 +59,7 @@ TEST(DepthPanelsInvariant, EndsAreEdgesAndLayersKnown) {
 
 // Polynomials up to the seventh degree are exact, up and down, for all cosines; the eighth in one thick panel is not.
 TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
-  const DepthPanels depth({0.9}, {0.3}, 0.4, 1);
+  const DepthPanels depth({0.9}, {0.3}, {0.4, 1, 1});
   for (const double mu : {1.0, 0.3, 0.02, 1e-3, 1e-6})
     for (const int n : {0, 1, 4, 7}) {
       const Passage passage(depth, {mu});
@@ -78,7 +78,7 @@ TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
           << mu << ' ' << n;
       EXPECT_NEAR(edges(0, 0), passed(n, 0.9, mu), 2e-11);
     }
-  const DepthPanels one({4.0}, {}, 4, 4);  // control
+  const DepthPanels one({4.0}, {}, {4, 4, 4});  // control
   const Passage passage(one, {1.0});
   MatrixXd light, edges = MatrixXd::Zero(1, 2);
   passage.fall(atNodes(one, [](double t) { return std::pow(t, 8); }), light, edges);
@@ -86,7 +86,7 @@ TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
 }
 
 TEST(PassageInvariant, LightDiesAwayOrKeepsUpWithItsSource) {
-  const DepthPanels depth({3.0}, {1.1}, 1e-4, 0.5);
+  const DepthPanels depth({3.0}, {1.1}, {1e-4, 0.1, 0.5});
   const Passage passage(depth, {0.7, 0.01});
   const auto panels = static_cast<Index>(depth.panels.size());
   MatrixXd light, edges = MatrixXd::Zero(2, panels + 1);

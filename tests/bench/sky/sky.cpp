@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "malus/air/AddingDoubling.hpp"
+#include "malus/air/LayeredLight.hpp"
 #include "malus/air/RayleighSky.hpp"
 
 using namespace malus;
@@ -142,5 +143,75 @@ BENCHMARK(doublingAerosol)
     ->Arg(70)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+// The same by successive orders (ch. LayeredLight), and its cost by streams and by layers, with the exponents that fit best.
+static void layeredAerosol(benchmark::State& state) {
+  const double g = static_cast<double>(state.range(0)) / 100;
+  const Scatterer aerosol = henyeyGreensteinScatterer(g);
+  int rounds = 0;
+  for (auto _ : state) {
+    const LayeredLight light({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.1}}}, 0.6, {0.25},
+                             pi, {0.4}, {0.3});
+    benchmark::DoNotOptimize(light.down(0, pi / 2, 0));
+    rounds = light.rounds();
+  }
+  state.counters["terms"] = static_cast<double>(aerosol.terms().size());
+  state.counters["rounds"] = rounds;
+}
+BENCHMARK(layeredAerosol)
+    ->Arg(30)
+    ->Arg(50)
+    ->Arg(70)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+static void solveLayers(benchmark::State& state, int layers, int streams) {
+  const Scatterer aerosol = henyeyGreensteinScatterer(0.7), air = rayleighScatterer(0.03);
+  const std::vector<AirLayer> all(static_cast<std::size_t>(layers),
+                                  {{air, 0.2 / layers}, {aerosol, 0.3 / layers}});
+  for (auto _ : state)
+    benchmark::DoNotOptimize(LayeredLight(all, 0.6, {0.25}, pi, {0.4}, {0},
+                                          {.streams = streams, .terms = 32, .thinnest = 1e-4}));
+  state.SetComplexityN(state.range(0));
+}
+static void layeredByStreams(benchmark::State& state) {
+  solveLayers(state, 1, static_cast<int>(state.range(0)));
+}
+static void layeredByLayers(benchmark::State& state) {
+  solveLayers(state, static_cast<int>(state.range(0)), 32);
+}
+BENCHMARK(layeredByStreams)
+    ->RangeMultiplier(2)
+    ->Range(32, 256)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Complexity();
+BENCHMARK(layeredByLayers)
+    ->RangeMultiplier(2)
+    ->Range(4, 64)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Complexity();
+
+// A table for a scene: a dome of 181 heights over hazy ground, one band.
+static void layeredDome(benchmark::State& state) {
+  std::vector<double> cosines;
+  for (int i = 0; i <= 180; ++i) cosines.push_back(std::max(1e-6, std::cos(i * pi / 360)));
+  const Scatterer aerosol = henyeyGreensteinScatterer(0.7);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(LayeredLight({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.3}}},
+                                          0.6, {0.25}, pi, cosines, {0.5}));
+}
+BENCHMARK(layeredDome)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+static void doublingDome(benchmark::State& state) {
+  std::vector<double> cosines;
+  for (int i = 0; i <= 180; ++i) cosines.push_back(std::max(1e-6, std::cos(i * pi / 360)));
+  const Scatterer aerosol = henyeyGreensteinScatterer(0.7);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(AddingDoubling({{{rayleighScatterer(0.03), 0.2}, {aerosol, 0.3}}},
+                                            0.6, 0.25, pi, cosines));
+}
+BENCHMARK(doublingDome)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 BENCHMARK_MAIN();
