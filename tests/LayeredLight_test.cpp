@@ -130,8 +130,7 @@ TEST(LayeredLightInvariant, EnergyIsConserved) {
           1e-7)
           << sun << ' ' << depths[k];
     EXPECT_NEAR(light.diffuseUp(0), pi * sun, 1e-7);
-    const LayeredLight darker(layers, sun, {0.999}, pi, {0.5}, {0},
-                              {.thinnest = 1e-4});  // control
+    const LayeredLight darker(layers, sun, {0.999}, pi, {0.5}, {0}, {});  // control
     EXPECT_GT(pi * sun - darker.diffuseUp(0), 1e-5);
   }
 }
