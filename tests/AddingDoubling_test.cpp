@@ -16,15 +16,11 @@
 #include "malus/base/Table.hpp"
 
 using namespace malus;
+using malus::testing::apart;
 using malus::testing::scattered;
 
 namespace {
 constexpr double pi = std::numbers::pi;
-double apart(const CDStokesVector& a, const CDStokesVector& b) {
-  double most = 0;
-  for (int i = 0; i < 4; ++i) most = std::max(most, std::abs(a.getStokes(i) - b.getStokes(i)));
-  return most;
-}
 const std::vector<double> views{0.3, 0.6, 0.95, 1.0};
 
 // Travel direction: u upwards, azimuth clockwise from the sunbeam's.
