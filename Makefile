@@ -59,6 +59,8 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
 	@tests/bench/commands.py $(BUILD)/malus
+	@$(NEED) valgrind
+	@tests/bench/instructions.py $(BUILD)/malus $(BUILD)/instructions.csv
 	@! [ -d $(BUILD)/python/malus ] || PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/bench/python.py
 
 bench-build: need-test need-browser ## build HEAD afresh in build-bench, run its tests, edit it; record the seconds of each part

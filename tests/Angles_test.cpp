@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -35,4 +36,24 @@ TEST(AnglesIdentity, ThereAndBack) {
   };
   EXPECT_EQ(misses(1), 0);
   EXPECT_EQ(misses(1.001), 360);  // control
+}
+
+TEST(AnglesIdentity, FractionsOfATurn) {
+  const auto worst = [](double factor) {
+    double most = 0;
+    for (int i = 0; i <= 2000; ++i) {
+      const double turns = i / 1000.0, angle = 2 * std::numbers::pi * turns * factor;
+      const auto [cosine, sine] = cosineAndSine(turns);
+      most = std::max(
+          {most, std::abs(cosine - std::cos(angle)), std::abs(sine - std::sin(angle))});
+    }
+    return most;
+  };
+  for (int i = 0; i <= 2000; ++i) {
+    const auto [x, y] = pointOnCircle(i / 1000.0);
+    EXPECT_NEAR(x * x + y * y, 1, 8e-16) << i;  // seven roundings of 1.1e-16
+    EXPECT_NEAR(x, cosineAndSine(i / 1000.0)[0], 2e-9) << i;
+  }
+  EXPECT_LT(worst(1), 1e-9);
+  EXPECT_GT(worst(1 + 1e-8), 1e-9);  // control
 }

@@ -172,6 +172,11 @@ TEST(SobolPointsInvariant, ScrambledPointsAreNets) {
       EXPECT_TRUE(isNet(net, m, 3, 4)) << key << " " << m;
       net[0][1] ^= 1u << 31;
       EXPECT_FALSE(isNet(net, m, 0, 2)) << "negative control";
+      net.clear();
+      const SobolPoints shallow(key, 1, 2, 3, 4, 1u << m);
+      for (std::uint32_t i = 0; i < 1u << m; ++i) net.push_back(wordsOf(shallow(first + i)));
+      EXPECT_TRUE(isNet(net, m, 0, 2)) << key << " " << m << ", no deeper than needed";
+      EXPECT_TRUE(isNet(net, m, 3, 4)) << key << " " << m << ", no deeper than needed";
     }
   }
 }
@@ -210,11 +215,34 @@ TEST(SobolPointsInvariant, EveryPointIsUniform) {
 }
 
 TEST(SobolPointsInvariant, CoinsAreIndependent) {
+  const auto deep = [](std::uint32_t x, std::uint32_t key) { return owenScrambled(x, key); };
   for (const auto& [prefix, depth] : {std::pair{0u, 0u}, {1u << 31, 1u}, {0xa5a50000u, 12u}}) {
-    EXPECT_GT(threeCoins(owenScrambled, prefix, depth), false_alarm) << depth;
+    EXPECT_GT(threeCoins(deep, prefix, depth), false_alarm) << depth;
   }
   EXPECT_LT(threeCoins(laineKarras, 0, 0), false_alarm)
       << "negative control: the coins of Laine's and Karras's permutation depend on each other";
+}
+
+// A set of four points is scrambled two levels deep. Its points lie in different cells of that depth, and so their third
+// digits must be independent coins, as they are in a set that is scrambled sixteen levels deep.
+TEST(SobolPointsInvariant, AsDeepAsTheirNumberCanShow) {
+  const auto together = [](std::uint64_t count) {
+    constexpr std::uint64_t draws = 20000;
+    std::vector<std::size_t> alike(2, 0);
+    for (std::uint64_t key = 0; key < draws; ++key) {
+      const SobolPoints points(11, 0, key, 0, 0, count);
+      for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}}) {
+        const auto third = [&](std::uint32_t n) {
+          return static_cast<int>(points(n)[0] * 8) & 1;
+        };
+        ++alike[static_cast<std::size_t>(third(i) ^ third(j))];
+      }
+    }
+    return chiSquaredPValue(alike, std::vector<double>(2, 0.5), 2 * draws);
+  };
+  EXPECT_GT(together(4), false_alarm);
+  EXPECT_GT(together(65536), false_alarm);
+  EXPECT_LT(together(1), false_alarm) << "negative control: not deep enough";
 }
 
 TEST(SobolPointsInvariant, BouncesAreIndependent) {

@@ -154,4 +154,5 @@ def main() -> None:
         to_two_percent(malus, work)
 
 
-main()
+if __name__ == "__main__":
+    main()
