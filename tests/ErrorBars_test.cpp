@@ -216,6 +216,160 @@ TEST(ErrorBarsInvariant, NegativeControlBatchesThatShareTheirPointsClaimTooLittl
   }
 }
 
+namespace {
+/// Copper behind filters before detectors whose noise is of the size of the light's own error.
+json filtered(bool mosaic) {
+  json scene = copper();
+  const auto polarizer = [](double deg) { return json{{"polarizer_deg", deg}}; };
+  json& filters = scene["sensor"]["polarimeter"];
+  if (mosaic)
+    filters = {{"mosaic", {{polarizer(90), polarizer(45)}, {polarizer(135), polarizer(0)}}},
+               {"recover", {"S0", "S1", "S2"}}};
+  else
+    filters = {{"cameras",
+                {{{"name", "a"}, {"polarizer_deg", 0}},
+                 {{"name", "b"}, {"polarizer_deg", 60}},
+                 {{"name", "c"}, {"polarizer_deg", 120}},
+                 {{"name", "d"},
+                  {"retarder_deg", 45},
+                  {"retardance_deg", 90},
+                  {"polarizer_deg", 0}}}}};
+  filters["noise"] = {{"electrons_per_unit", 3000}, {"read_noise_electrons", 6}};
+  return scene;
+}
+
+/// What is left out of the errors.
+enum class Without { nothing, noise, light, neighbours };
+
+/// Light recovered from pictures of two hundred seeds; of a mosaic, pixels whose windows share none.
+AllSeries recoverSeeds(bool mosaic, Without without) {
+  Scene scene = sceneOf(filtered(mosaic));
+  const std::size_t step = mosaic ? 2 : 1, numbers = StokesErrors::numbers;
+  AllSeries all;
+  for (std::size_t seed = 1; seed <= seeds; ++seed) {
+    scene.radiometry.seed = scene.instrument->noise.seed = seed;
+    RenderedImage image = renderScene(scene, 0, with(2, batches));
+    if (without == Without::light) std::ranges::fill(image.errors, 0);
+    const Tile whole = scene.instrument->polarimeter.whole();
+    Measurement made = measure(*scene.instrument, image.stokes, whole, 0, image.errors);
+    if (without == Without::noise) {
+      Instrument silent = *scene.instrument;
+      silent.noise = {};
+      made.errors = measure(silent, image.stokes, whole, 0, image.errors).errors;
+    }
+    if (without == Without::neighbours) made.errors = image.errors;
+    for (std::size_t i = 3; without == Without::neighbours && i < made.errors.size();
+         i += numbers)
+      made.errors[i] = 0;  // S3 is not told
+    std::vector<double> stokes, errors;
+    for (std::size_t y = 0; y < image.height; y += step)
+      for (std::size_t x = 0; x < image.width; x += step) {
+        const auto p = std::ptrdiff_t(y * image.width + x), n = std::ptrdiff_t(numbers);
+        stokes.insert(stokes.end(), &made.stokes[4 * std::size_t(p)],
+                      &made.stokes[4 * std::size_t(p)] + 4);
+        errors.insert(errors.end(), made.errors.begin() + p * n,
+                      made.errors.begin() + (p + 1) * n);
+      }
+    append(all, stokes, errors);
+  }
+  return all;
+}
+}  // namespace
+
+// The light and its noise have other seeds in each picture, and their spread is what each picture claims.
+TEST(ErrorBarsInvariant, LightBehindFiltersClaimsItsSpreadOverTwoHundredSeeds) {
+  for (const bool mosaic : {false, true}) {
+    const AllSeries all = recoverSeeds(mosaic, Without::nothing);
+    const auto judged = judge(all);
+    for (std::size_t c = 0; c < 4; ++c) {
+      EXPECT_GT(judged[c].probability, by_chance) << mosaic << " S" << c;
+      EXPECT_EQ(judged[c].pixels, mosaic ? (c < 3 ? 12u : 0u) : 48u) << mosaic << " S" << c;
+      if (judged[c].pixels > 0)
+        fmt::print("{} S{}: p = {:.3g}, claimed over observed {:.3f}\n",
+                   mosaic ? "mosaic" : "cameras", c, judged[c].probability, ratioOf(all, c));
+    }
+  }
+}
+
+TEST(ErrorBarsInvariant, NegativeControlsBehindFiltersClaimTheWrongSpread) {
+  for (const bool mosaic : {false, true})
+    for (const Without without : {Without::noise, Without::light, Without::neighbours}) {
+      if (without == Without::neighbours && !mosaic) continue;
+      const auto judged = judge(recoverSeeds(mosaic, without));
+      double least = 1;
+      for (const Judgement& one : judged) least = std::min(least, one.probability);
+      EXPECT_LT(least, by_chance) << mosaic << ' ' << int(without);
+    }
+}
+
+// Cube, picture and products of what filters tell, and the same bits however they are made.
+TEST(ErrorBarsIdentity, FilesBehindFiltersHaveTheirErrors) {
+  json text = filtered(true);
+  text["sensor"]["width"] = 40, text["sensor"]["height"] = 33;
+  text["bands"]["wavelength_nm"] = {500, 600};
+  const Workplace place(text);
+  const std::string render = "render s.json --batches 3 --write cube,truth,error,pictures ";
+  ASSERT_EQ(place.malus(render + "--threads 1 --out a").code, 0);
+  ASSERT_EQ(place.malus(render + "--threads 3 --out b").code, 0);
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(place.malus(render + "--out c --part " + part).code, 0);
+  ASSERT_EQ(place.malus("merge c").code, 0);
+  for (const char* part : {"0,0,21,33", "21,0,40,33"})
+    ASSERT_EQ(place.malus(render + "--out d --part " + part).code, 0);
+  ASSERT_EQ(place.malus("merge d").code, 0);
+  for (const char* name : {"s.recovered.img", "s.recovered.error.img",
+                           "s.recovered.error.img.hdr", "s.recovered.error.png"})
+    for (const char* other : {"b/", "c/", "d/"}) {
+      EXPECT_FALSE(place.file(std::string("a/") + name).empty()) << name;
+      EXPECT_EQ(place.file(std::string("a/") + name), place.file(std::string(other) + name))
+          << other << name;
+    }
+  EXPECT_FALSE(std::filesystem::exists(place.scratch / "a/s.recovered.rays.png"));
+  const Cube light = readCube(place.scratch / "a/s.img"),
+             errors = readCube(place.scratch / "a/s.error.img"),
+             back = readCube(place.scratch / "a/s.recovered.img"),
+             sure = readCube(place.scratch / "a/s.recovered.error.img");
+  EXPECT_EQ(sure.header.channels,
+            (std::vector<std::string>{"S0 500", "S1 500", "S2 500", "S0 600", "S1 600",
+                                      "S2 600", "S0S1 500", "S0S2 500", "S1S2 500", "S0S1 600",
+                                      "S0S2 600", "S1S2 600"}));
+  const Scene scene = sceneOf(text);
+  const std::vector<double> lit(light.data.begin(), light.data.end()),
+      known(errors.data.begin(), errors.data.end());
+  const Measurement made =
+      measure(*scene.instrument, lit, scene.instrument->polarimeter.whole(), 0, known);
+  const std::array<std::size_t, 3> components{0, 1, 2};
+  ASSERT_EQ(place.malus("products a/s.recovered.img").code, 0);
+  const Cube products = readCube(place.scratch / "a/s.recovered.products.img"),
+             unsure = readCube(place.scratch / "a/s.recovered.products.error.img");
+  EXPECT_EQ(unsure.header.channels, products.header.channels);
+  ASSERT_EQ(place.malus("products a/s.recovered.img --debias").code, 0);
+  const Cube debiased = readCube(place.scratch / "a/s.recovered.products.img");
+  std::size_t smaller = 0;
+  for (std::size_t p = 0; p < 40 * 33; ++p)
+    for (std::size_t band = 0; band < 2; ++band) {
+      const auto wanted = StokesErrors::of(std::span(made.errors).subspan(p * 20, 20), band);
+      const auto found =
+          StokesErrors::of(std::span(sure.data).subspan(p * 12, 12), band, components);
+      for (const std::size_t c : components)
+        ASSERT_EQ(float(found.standard[c]), float(wanted.standard[c]));
+      for (const std::size_t k : {0u, 1u, 3u})
+        ASSERT_EQ(float(found.correlation[k]), float(wanted.correlation[k]));
+      const float* s = &back.data[p * 6 + band * 3];
+      const CDStokesVector stokes(s[0], s[1], s[2], 0);
+      const auto expected = productErrors(stokes, found);
+      ASSERT_EQ(unsure.data[p * 4 + band * 2], float(expected[1]));
+      ASSERT_EQ(unsure.data[p * 4 + band * 2 + 1], float(expected[3]));
+      ASSERT_EQ(debiased.data[p * 4 + band * 2], float(debiasedDoLP(stokes, found)));
+      smaller += debiased.data[p * 4 + band * 2] < products.data[p * 4 + band * 2];
+    }
+  EXPECT_GT(smaller, 1000u);
+  EXPECT_FALSE(place.file("a/s.recovered.550.error.png").empty() &&
+               place.file("a/s.recovered.600.error.png").empty());
+  ASSERT_EQ(place.malus("render s.json --out one").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(place.scratch / "one/s.recovered.error.img"));
+}
+
 // The samplings that are drawn at random tell their error, and those of the thesis's grids are refused.
 TEST(ErrorBarsInvariant, RandomDirectionsTellTheirErrorAndGridsAreRefused) {
   json text = copper(4, 3);

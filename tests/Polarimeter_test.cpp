@@ -6,8 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "malus/base/Error.hpp"
+#include "malus/render/ErrorBars.hpp"
 #include "malus/render/Tile.hpp"
 
 using namespace malus;
@@ -216,6 +221,105 @@ TEST(PolarimeterInvariant, NoiseHasItsMeanAndVariance) {
     EXPECT_GT(std::abs(squares / n - 1.2 * variance),
               5 * variance * std::sqrt((2 + 1 / mean) / n));
   }
+}
+
+namespace {
+constexpr std::size_t each = bands * StokesErrors::numbers;
+
+/// Eight batches of an image whose components vary together, pixel by pixel.
+std::vector<std::vector<double>> batchesOfAnImage() {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  std::vector<std::vector<double>> made(8, varied());
+  for (auto& batch : made)
+    for (std::size_t i = 0; i < batch.size(); i += 4) {
+      const double common = normal(engine);
+      for (std::size_t c = 0; c < 4; ++c)
+        batch[i + c] += 0.1 * common + 0.02 * double(c) * normal(engine);
+    }
+  return made;
+}
+
+/// Means of [vector] and their errors, [pixel] StokesErrors of all bands.
+std::pair<std::vector<double>, std::vector<double>> meansOf(
+    const std::vector<std::vector<double>>& all) {
+  BatchMeans means(all[0].size() / 4);
+  for (const auto& batch : all) means.add(batch);
+  std::vector<double> errors(all[0].size() / 4 * StokesErrors::numbers);
+  for (std::size_t v = 0; v < all[0].size() / 4; ++v)
+    means.errors(v).put(std::span(errors).subspan(v / bands * each, each), v % bands);
+  return {{means.mean().begin(), means.mean().end()}, errors};
+}
+const std::vector<std::string> names4{"a", "b", "c", "d"};
+}  // namespace
+
+// Without noise the errors behind cameras are those of the batches, each recovered by itself.
+TEST(PolarimeterIdentity, ErrorsBehindCamerasAreThoseOfRecoveredBatches) {
+  std::vector<CDMuellerMatrix> six = four;
+  six.push_back(linearPolarizer(3 * pi / 4)), six.push_back(circularPolarizer(-1));
+  for (const auto& filters : {four, six}) {
+    const Polarimeter p(camerasBehind(filters), width, height, bands, 1, 1);
+    const auto all = batchesOfAnImage();
+    std::vector<std::vector<double>> recovered;
+    for (const auto& batch : all) recovered.push_back(recoverAll(p, readAll(p, batch)));
+    const auto [light, errors] = meansOf(all);
+    const Measurement made = measure({p, names4, {}, true}, light, p.whole(), 0, errors);
+    EXPECT_LT(farthest(made.errors, meansOf(recovered).second), 1e-12);
+    EXPECT_GT(farthest(made.errors, std::vector<double>(made.errors.size())), 0.05);
+    EXPECT_TRUE(measure({p, names4, {}, true}, light, p.whole()).errors.empty());
+    EXPECT_TRUE(measure({p, names4, {}, false}, light, p.whole(), 0, errors).errors.empty());
+  }
+}
+
+// The chapter's example: four linear polarisers, 10,000 electrons, exact light; two rows of each sign by hand.
+TEST(PolarimeterIdentity, NoiseOfRecoveredLightByHand) {
+  const Polarimeter p(mosaicOf(polarsens), 2, 2, 1, 2, 2);
+  std::vector<double> light, none(4 * StokesErrors::numbers);
+  for (int i = 0; i < 4; ++i) light.insert(light.end(), {1, 0, 0, 0});
+  const Instrument noisy{p, {"a"}, {10'000, 0, never, 1}, true};
+  const Measurement shot = measure(noisy, light, p.whole(), 0, none);
+  const auto errors = StokesErrors::of(std::span(shot.errors).first(10), 0);
+  EXPECT_NEAR(errors.standard[0], std::sqrt(0.5e-4), 1e-15);
+  EXPECT_NEAR(errors.standard[1], std::sqrt(1e-4), 1e-15);
+  EXPECT_NEAR(errors.standard[2], std::sqrt(1e-4), 1e-15);
+  EXPECT_LT(errors.standard[3], 1e-15) << "not measured";
+  const Instrument read{
+      p, {"a"}, {10'000, 100, never, 1}, true};  // twice the variance, and more
+  const Measurement both = measure(read, light, p.whole(), 0, none);
+  const auto more = StokesErrors::of(std::span(both.errors).first(10), 0);
+  EXPECT_NEAR(more.standard[0], std::sqrt(0.5e-4 + 1e-4), 1e-15);
+  // a full well has no error, and neither has what is recovered with it
+  light[4 * 3] = 1.5;
+  const Instrument full{p, {"a"}, {10'000, 0, 6500, 1}, true};
+  const Measurement made = measure(full, light, p.whole(), 0, none);
+  EXPECT_EQ(made.full_wells, 1u);
+  EXPECT_TRUE(std::isnan(made.errors[0]));
+}
+
+TEST(PolarimeterInvariant, ErrorsOfPartsAreTheVeryNumbersOfTheWhole) {
+  const Polarimeter p(mosaicOf(polarsens), width, height, bands, 2, 2);
+  const auto [light, errors] = meansOf(batchesOfAnImage());
+  const Instrument noisy{p, {"a"}, {500, 3, never, 2}, true};
+  const Measurement whole = measure(noisy, light, p.whole(), 0, errors);
+  for (const Tile& part : {Tile{0, 0, 3, 2}, Tile{3, 0, 5, 4}, Tile{1, 2, 3, 4}}) {
+    const Tile from = p.around(part);
+    std::vector<double> lit, sure;
+    for (std::size_t y = from.y0; y < from.y1; ++y) {
+      const std::size_t first = y * width + from.x0, count = from.x1 - from.x0;
+      const auto add = [&](auto& to, const auto& all, std::size_t numbers) {
+        to.insert(to.end(), all.begin() + std::ptrdiff_t(first * numbers),
+                  all.begin() + std::ptrdiff_t((first + count) * numbers));
+      };
+      add(lit, light, 4 * bands), add(sure, errors, each);
+    }
+    const Measurement made = measure(noisy, lit, part, 0, sure);
+    std::size_t at = 0;
+    for (std::size_t y = part.y0; y < part.y1; ++y)
+      for (std::size_t x = part.x0; x < part.x1; ++x)
+        for (std::size_t i = 0; i < each; ++i)
+          ASSERT_EQ(made.errors[at++], whole.errors[(y * width + x) * each + i]);
+  }
+  EXPECT_THROW(measure(noisy, light, p.whole(), 0, std::vector<double>(7)), MathError);
 }
 
 TEST(PolarimeterInvariant, NoiseDependsOnSeedAndFrameAlone) {
