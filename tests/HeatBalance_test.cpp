@@ -13,7 +13,7 @@
 using namespace malus;
 
 namespace {
-constexpr double pi = std::numbers::pi, day_s = 86400, omega = 2 * pi / day_s;
+constexpr double pi = std::numbers::pi, omega = 2 * pi / day_s;
 const Slab soil{1, 1600, 1250}, copper{390, 8960, 385}, wood{0.12, 500, 1600};
 
 using Flow = std::function<SurfaceHeat(double t_s)>;
