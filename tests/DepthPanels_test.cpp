@@ -34,7 +34,7 @@ double passed(int n, double t, double mu) {
 }  // namespace
 
 TEST(DepthPanelsByHand, EightPanelsOfTheExample) {
-  const DepthPanels depth({1.0}, {}, {0.1, 1, 1});
+  const DepthPanels depth({1.0}, {}, {0.1, 1, {1}});
   ASSERT_EQ(depth.panels.size(), 8u);
   EXPECT_DOUBLE_EQ(depth.panels[0].thickness, 0.0625);
   EXPECT_DOUBLE_EQ(depth.panels[2].thickness, 0.125);
@@ -43,7 +43,7 @@ TEST(DepthPanelsByHand, EightPanelsOfTheExample) {
 }
 
 TEST(DepthPanelsInvariant, EndsAreEdgesAndLayersKnown) {
-  const DepthPanels depth({0.2, 0.5, 2.0}, {0.7, 0.2}, {1e-3, 0.1, 0.5});
+  const DepthPanels depth({0.2, 0.5, 2.0}, {0.7, 0.2}, {1e-3, 0.1, {0.5}});
   for (const double end : {0.0, 0.2, 0.5, 0.7})
     EXPECT_NEAR(depth.panels.at(depth.edgeAt(end)).top, end, 1e-15);
   EXPECT_EQ(depth.edgeAt(2.0), depth.panels.size());
@@ -57,9 +57,29 @@ TEST(DepthPanelsInvariant, EndsAreEdgesAndLayersKnown) {
   EXPECT_NEAR(depth.whole(), 2, 1e-14);
 }
 
+// Each layer has its own limit, and in the dark there is none.
+TEST(DepthPanelsInvariant, PanelsAreAsThickAsTheirLayerAllows) {
+  const DepthPanels depth({10, 110}, {}, {1, 1, {0.5, 20}});
+  double first = 0, second = 0;
+  for (const auto& panel : depth.panels) {
+    double& most = panel.layer == 0 ? first : second;
+    most = std::max(most, panel.thickness);
+  }
+  EXPECT_LE(first, 0.5);
+  EXPECT_GT(first, 0.25);
+  EXPECT_LE(second, 20);
+  EXPECT_GT(second, 10);
+  const auto panels = [](double dark) {
+    return DepthPanels({1000}, {}, {1, 1, {0.5}, dark}).panels;
+  };
+  EXPECT_EQ(panels(2000).size(), 2048u);
+  EXPECT_LT(panels(10).size(), 60u);
+  for (const auto& panel : panels(10)) EXPECT_LE(panel.thickness, panel.top < 10 ? 0.5 : 1000);
+}
+
 // Polynomials up to the seventh degree are exact, up and down, for all cosines; the eighth in one thick panel is not.
 TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
-  const DepthPanels depth({0.9}, {0.3}, {0.4, 1, 1});
+  const DepthPanels depth({0.9}, {0.3}, {0.4, 1, {1}});
   for (const double mu : {1.0, 0.3, 0.02, 1e-3, 1e-6})
     for (const int n : {0, 1, 4, 7}) {
       const Passage passage(depth, {mu});
@@ -78,7 +98,7 @@ TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
           << mu << ' ' << n;
       EXPECT_NEAR(edges(0, 0), passed(n, 0.9, mu), 2e-11);
     }
-  const DepthPanels one({4.0}, {}, {4, 4, 4});  // control
+  const DepthPanels one({4.0}, {}, {4, 4, {4}});  // control
   const Passage passage(one, {1.0});
   MatrixXd light, edges = MatrixXd::Zero(1, 2);
   passage.fall(atNodes(one, [](double t) { return std::pow(t, 8); }), light, edges);
@@ -86,7 +106,7 @@ TEST(PassageInvariant, PolynomialsAreIntegratedExactly) {
 }
 
 TEST(PassageInvariant, LightDiesAwayOrKeepsUpWithItsSource) {
-  const DepthPanels depth({3.0}, {1.1}, {1e-4, 0.1, 0.5});
+  const DepthPanels depth({3.0}, {1.1}, {1e-4, 0.1, {0.5}});
   const Passage passage(depth, {0.7, 0.01});
   const auto panels = static_cast<Index>(depth.panels.size());
   MatrixXd light, edges = MatrixXd::Zero(2, panels + 1);

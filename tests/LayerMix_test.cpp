@@ -65,3 +65,11 @@ TEST(LayerMixInvariant, TheAureoleIsPoissonsSum) {
   }
   EXPECT_TRUE(LayerMix({{{peaked(), 3, 1}}}, 2000).aureole(sun, mu, depth).empty());
 }
+
+// Through deep air the sum of Poisson has terms beyond all numbers, and nothing comes through.
+TEST(LayerMixInvariant, NoAureoleThroughDeepAir) {
+  for (const double depth : {1e3, 1e4})
+    for (const double term : LayerMix({{{peaked(), depth}}}, 20).aureole(0.5, 0.5, depth / 2))
+      EXPECT_LT(std::abs(term), 1e-9);
+  EXPECT_GT(std::abs(LayerMix({{{peaked(), 5}}}, 20).aureole(0.5, 0.5, 1)[0]), 1e-6);
+}
