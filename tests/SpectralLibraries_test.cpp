@@ -147,7 +147,7 @@ TEST(SpectralLibrariesRefusals, BrokenFilesOfECOSTRESS) {
       changed(ecostress, "X Units", "X Unit"),
       "oak.txt:12: comes before the units; keep the lines X Units and Y Units of the library");
   EXPECT_EQ(changed(ecostress, "0.5000", "0.4000").substr(0, 40),
-            "oak.txt:13: reflectance wavelength = 400");
+            "oak.txt:13: wavelength = 400 nm: does no");
   EXPECT_EQ(changed(ecostress, "Reflectance", "Transmittance").substr(0, 45),
             "oak.txt: transmittance: is what this spectrum");
 }
