@@ -169,3 +169,44 @@ TEST(AerosolSkyIdentity, ParticlesMayAbsorbAnyShare) {
   for (const char* albedo : {"0", "0.5", "1"}) EXPECT_NO_THROW(with(albedo)) << albedo;
   EXPECT_THROW(with("1.01"), InputError);
 }
+
+// The air before a camera is made of the sky's own light, if it is wanted, and if the aerosol has a height.
+TEST(AerosolSkyInvariant, TheCameraLooksThroughTheSameAir) {
+  const SpectralGridPtr grid = SpectralGrid::make({450, 650});
+  const SkyEntry& entry = skyEntry("rayleigh", {});
+  const auto made = [&](const std::vector<std::pair<std::string, std::string>>& more,
+                        bool before) {
+    std::vector<std::pair<std::string, std::string>> given{
+        {"aerosol", spheroids()}, {"aerosol_tau", "0.2"}, {"albedo", "0.3"}};
+    given.insert(given.end(), more.begin(), more.end());
+    return entry.make(settingsOf(entry, grid, given),
+                      {.grid = grid, .sun = sunAt(grid, 50, 120), .before = before});
+  };
+  const MadeSky haze = made({{"aerosol_scale_height_m", "1500"}}, true);
+  ASSERT_TRUE(haze.path_radiance);
+  EXPECT_TRUE(haze.path_radiance->polarizes());
+  EXPECT_FALSE(made({}, false).path_radiance);
+  // a look up through all of the air brings the sky of the scene, here between the nodes of both tables
+  const CDVector up = compassDirection(33.3 * degree, 77 * degree);
+  CDSpectralVector<CDStokesVector> sky(grid), air(grid);
+  haze.sky->radiance(up, sky);
+  haze.path_radiance->apply(up * 200e3, {0, 0, 0}, air);
+  for (std::size_t band = 0; band < 2; ++band) EXPECT_LT(apart(air[band], sky[band]), 0.01);
+  haze.path_radiance->apply(up * 1500, {0, 0, 0}, air *= 0.0);
+  EXPECT_GT(apart(air[0], sky[0]), 0.1) << "negative control";
+  // the same without a wish for it: the sky keeps its bits
+  made({{"aerosol_scale_height_m", "1500"}}, false).sky->radiance(up, air);
+  for (std::size_t band = 0; band < 2; ++band) EXPECT_LT(apart(air[band], sky[band]), 1e-8);
+  for (const char* place : {"below", "above"}) {
+    try {
+      (void)made({{"aerosol_place", place}}, true);
+      FAIL() << place;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("give aerosol_scale_height_m in its place"),
+                std::string::npos)
+          << error.what();
+    }
+    EXPECT_THROW(made({{"aerosol_place", place}, {"aerosol_scale_height_m", "900"}}, false),
+                 InputError);
+  }
+}
