@@ -18,11 +18,11 @@ const Item& measured() {
 }
 }  // namespace
 
-TEST(XSamplingInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
+TEST(XSamplingInvariant, ThreeClaimsHoldAndThePicturesAreDrawn) {
   const std::map<std::string, Verdict> expected{{"random", Verdict::reproduced},
                                                 {"sobol", Verdict::reproduced},
                                                 {"rotated", Verdict::reproduced},
-                                                {"mixture", Verdict::reproduced}};
+                                                {"mixture", Verdict::differs}};
   EXPECT_EQ(verdictsOf(measured()), expected);
   EXPECT_EQ(measured().pictures().size(), 3u);
 }
