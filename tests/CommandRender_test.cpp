@@ -263,6 +263,11 @@ const std::vector<BadScene> bad_scenes{
     {R"({"radiometry": {"rays": [5000, 2]}})",
      "radiometry.rays[0] = 5000: are too many rays from one hit that lead to more; give at "
      "most 4096"},
+    {R"({"radiometry": {"sampling": "two-and-a-half", "rays": [91]}})",
+     "radiometry.rays = [91]: does not fit two and a half bounces; give two numbers, 3 or more "
+     "rays "
+     "from "
+     "the first hit and 1 from the second: \"rays\": [91, 1]"},
     {R"({"platform": {"frames": 1000000000}})",
      "platform.frames = 1000000000: are too many frames; give at most 1000000"},
     {R"({"platform": {"velocity_m_s": [1, 0, 0]}})",

@@ -282,6 +282,79 @@ TEST(RadiometryInvariant, SurfacesThatAskTogetherAnswerAsEachByItself) {
   }
 }
 
+namespace {
+/// A ground and an endless wall beside it that reflects so much, under a sky of 2.
+World corner(double wall_reflectance, double sky = 2) {
+  const auto matt = [](double reflectance) {
+    return std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(one_band, reflectance), 0.0);
+  };
+  const Transform large = Transform::scale(1e4),
+                  upright = Transform::rotate({0, 1, 0}, -pi / 2);
+  const Transform wall = Transform::translate({1, 0, 0}).after(upright).after(large);
+  return worldOf({{large, matt(0.5)}, {wall, matt(wall_reflectance)}}, sky);
+}
+/// By two and a half bounces with 48 directions for the sky; toward the wall the ground's mirror ray meets it.
+CDStokesVector byTheOldTracer(const World& world, bool toward,
+                              Radiometry::Truth* truth = nullptr) {
+  return seen(world, {.sampling = Sampling::twoAndAHalf, .rays = {50, 1}},
+              looking({0.5, 0, 0}, {toward ? -0.6 : 0.0, 0.1, 1}, {0, 1, 0}), truth);
+}
+const double secant = 1 / std::cos(15 * degree);  // of three zeniths, as below
+}  // namespace
+
+// A wall that sends back the sky's very radiance (its reflectance makes up for the grid's secant) stands for all that hides the
+// sky, so that ground beside it is as bright as without it. 1e-6: weights are single precision.
+TEST(RadiometryPublished, TwoAndAHalfBouncesKeepAnEvenHemisphere) {
+  const World even = corner(1 / secant);
+  Radiometry::Truth truth;
+  const double open = 0.5 * 2 * secant, found = byTheOldTracer(even, true, &truth).getScalar();
+  EXPECT_NEAR(found, open, 1e-6 * open);
+  EXPECT_EQ(truth.rays, 50u) << "the camera's, the mirror's, and 48 for the sky; no sun";
+  const double missed = byTheOldTracer(even, false).getScalar();
+  EXPECT_NEAR(missed, open / 2, 1e-3 * open)
+      << "a mirror ray that meets nothing brings nothing";
+  EXPECT_NEAR(byTheOldTracer(corner(0.2 / secant), true).getScalar(), 0.6 * open, 1e-3 * open);
+}
+
+// The sun on the second surface alone, and on both: f E cos of the wall for half of the ground's hemisphere.
+TEST(RadiometryPublished, TwoAndAHalfBouncesLightTheSecondSurface) {
+  World world = corner(0.8, 0);
+  const CDVector to_sun = normalized({-1, 0, 1});
+  setSun(world, to_sun, 3);
+  const double direct = 0.5 / pi * 3 * to_sun.z, wall = 0.8 / pi * 3 * -to_sun.x;
+  Radiometry::Truth truth;
+  EXPECT_NEAR(byTheOldTracer(world, true, &truth).getScalar(), direct + 0.5 * secant * wall / 2,
+              1e-3 * wall);
+  EXPECT_EQ(truth.rays, 52u);
+  EXPECT_NEAR(byTheOldTracer(world, false).getScalar(), direct, 1e-9);
+}
+
+// Rough copper by way of rough copper: circular light needs both, and is there only if the mirror ray finds the second.
+TEST(RadiometryInvariant, TwoAndAHalfBouncesCarryPolarisation) {
+  const Transform wall =
+      Transform::translate({1, 0.3, 0.6}).after(Transform::rotate({0.3, 1, 0}, -1.1));
+  World world = worldOf({{{}, copper()}, {wall, copper()}}, 0.1);
+  setSun(world, {-0.5, 0.2, 1}, 1);
+  const RadiometryOptions options{.sampling = Sampling::twoAndAHalf, .rays = {400, 1}};
+  const auto circular = [&](const CDVector& to_viewer) {
+    return std::abs(
+        seen(world, options, looking({0.3, 0, 0}, to_viewer, {0, 1, 0})).getStokes(3));
+  };
+  EXPECT_GT(circular({-1, 0.1, 0.6}), 1e-6);
+  EXPECT_LT(circular({0.3, 0.9, 0.6}), 1e-15) << "negative control: the mirror ray leads away";
+}
+
+TEST(RadiometryInvariant, TwoAndAHalfBouncesNeedTheirRays) {
+  const World world = corner(0.5);
+  const auto tracer = std::make_shared<RayTracer>(world.geometry);
+  for (const std::vector<int>& rays :
+       std::vector<std::vector<int>>{{91}, {2, 1}, {91, 2}, {91, 1, 1}})
+    EXPECT_THROW(Radiometry(world, tracer, {.sampling = Sampling::twoAndAHalf, .rays = rays}),
+                 MathError);
+  EXPECT_NO_THROW(
+      Radiometry(world, tracer, {.sampling = Sampling::twoAndAHalf, .rays = {3, 1}}));
+}
+
 // Ground and a wall, both endless, in a corner: each sees the other with half of its hemisphere, so that under a uniform
 // sky L_n = rho (L + L_{n-1}) / 2 after n reflections, times 1/cos(15 deg) for the three zeniths of the grid (see the chapter).
 // 1e-3: sixteen azimuths, however turned, are halved by a plane, but for the little that the wall's finite size leaves open.

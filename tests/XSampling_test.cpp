@@ -56,6 +56,22 @@ TEST(XSamplingRegression, ImagesHelpInScenesWithOtherMirrors) {
   EXPECT_LT(std::stod(values["apart"]), 5);
 }
 
+// What the chapter says of the old tracer: worse than the thesis's grid and than importance wherever rays are many.
+TEST(XSamplingRegression, TheOldTracerIsWorseThanItsSuccessors) {
+  const Item item = ran("X.tracer");
+  const std::map<std::string, Verdict> expected{{"bias", Verdict::reproduced},
+                                                {"matt", Verdict::differs}};
+  EXPECT_EQ(verdictsOf(item), expected);
+  auto values = valuesOf(item);
+  const auto error = [&](const std::string& of) { return std::stod(values[of]); };
+  EXPECT_LT(error("matt.ground"), error("matt.sides"));
+  for (const std::string s : {".128.S0", ".128.S3"}) {
+    EXPECT_LT(error("grid" + s), error("old" + s)) << s;
+    EXPECT_LT(error("importance" + s), error("old" + s)) << s;
+    EXPECT_GT(error("importance" + s), 0) << "negative control: a picture compared with itself";
+  }
+}
+
 // The same seed makes the same picture, so errors are equal to the last bit; time is not asked.
 TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
