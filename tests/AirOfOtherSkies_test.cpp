@@ -1,9 +1,12 @@
 // The air before a camera under skies that are not made of air (nw/files/SceneReader.nw, nw/air/AerosolSky.nw).
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "Program.hpp"
 #include "malus/air/Sky.hpp"
 #include "malus/base/Angles.hpp"
 #include "malus/files/SceneReader.hpp"
@@ -108,4 +111,27 @@ TEST(AirOfOtherSkiesIdentity, WhatDoesNotFitIsSaidAtItsPlace) {
   table["path_radiance"] = true;
   has(complaint(sceneWith(table, nullptr, 1)),
       "is not known of such a sky; leave it out, or give the scene an \"atmosphere\"");
+}
+
+// The lake of the README, small. Its far ridge is paler than the near one, by the air alone: seen without air both are leaves.
+TEST(AirOfOtherSkiesInvariant, TheShippedLakeFadesWithDistance) {
+  const auto lake =
+      std::filesystem::path(MALUS_SOURCE_DATA).parent_path() / "scenes/hazy-lake.json";
+  const auto ridges = [&](const std::string& patch) {
+    const Scene scene = readScene(lake, patch);
+    const CDVector camera{9, -28, 4};
+    std::array<double, 2> dark{};  // what a black ridge would show at 550 nm
+    for (const auto& [i, at] : {std::pair(0, CDVector{500, 1040, 20}), {1, {500, 4200, 100}}}) {
+      CDSpectralVector<CDStokesVector> light(scene.world.grid);
+      if (scene.world.atmosphere) scene.world.atmosphere->apply(at, camera, light);
+      dark[i] = std::as_const(light)[0].getScalar();
+    }
+    return dark;
+  };
+  const std::string green = R"({"bands": {"wavelength_nm": [550]}, )";
+  const auto hazy = ridges(green + R"("title": ""})");
+  EXPECT_GT(hazy[0], 0);
+  EXPECT_GT(hazy[1], 2 * hazy[0]);
+  const auto clear = ridges(green + R"("sky": null})");
+  EXPECT_EQ(clear[1], 0) << "negative control";
 }
