@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -16,6 +17,8 @@
 #include "malus/air/TableSky.hpp"
 #include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/files/SceneReader.hpp"
+#include "malus/render/Scene.hpp"
 
 using namespace malus;
 
@@ -420,6 +423,20 @@ TEST(SkyPrintoutsInvariant, FilesOfATable) {
   ASSERT_EQ(files.size(), 12u);
   EXPECT_EQ(files[5], listing / "special.txt");
   EXPECT_TRUE(skyPrintoutsOf(listing / "special.txt").empty());
+}
+
+TEST(SkyPrintoutsInvariant, AScene) {
+  const Listing listing(modtran5, modtran5);
+  const std::string scene = R"({"malus": 1, "bands": {"wavelength_nm": [500]},
+    "geometry": [{"ground": {"z_m": 0, "material": "plate"}}],
+    "materials": {"plate": {"model": "lambertian", "reflectance": 0.5}},
+    "sky": {"model": "table", "file": "sky.csv"},
+    "sensor": {"kind": "framing", "width": 1, "height": 1, "field_of_view_deg": 1},
+    "platform": {"path": "fixed", "position_m": [0, 0, 10], "look_at_m": [0, 0, 0], "up": [0, 1, 0]}})";
+  const Scene read = readSceneText(scene, "scene.json", listing.path);
+  EXPECT_NE(std::ranges::find(read.files, listing / "special.txt"), read.files.end());
+  EXPECT_NEAR(ask(*read.world.sky, 80, 30).getScalar(), 0.4, 1e-12);
+  EXPECT_FALSE(read.world.sky->polarized());
 }
 
 // As a user meets them: an answer of malus sky, and a broken file with exit code 2 and one line.
