@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <random>
 
 #include "Program.hpp"
 #include "malus/air/RayleighSky.hpp"
@@ -404,6 +405,9 @@ TEST(SkyPrintoutsRefusal, Listings) {
       "sky.csv:8: printout = special.txt: has other wavelengths or components than common.txt");
   has(swapped(modtran5.substr(modtran5.find("19000.00")), " -9999.\n"),
       "special.txt:4: is followed by no numbers");
+  const Listing empty(modtran5, modtran5);
+  put(empty / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout\n");
+  has(empty.refused(), "sky.csv: printout: names no printout; give a row");
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
   has(gone.refused(), "sky.csv:8: printout = special.txt: is not there; name a file");
@@ -432,6 +436,31 @@ TEST(SkyPrintoutsRefusal, Mystic) {
   put(deviations / "sky.csv", header + "zenith_deg,azimuth_deg,printout\n0,0,mc.rad.std.spc\n");
   put(deviations / "mc.rad.std.spc", good);
   has(deviations.refused(), "holds standard deviations, not radiances");
+}
+
+// A byte changed, a piece cut out or doubled: whatever becomes of a text, it is read or refused in one line.
+TEST(SkyPrintoutsInvariant, BrokenTextsAreReadOrRefused) {
+  Printing p;
+  p.last_phi = 180;
+  const std::string mystic = "450 0 0 0 1\n450 0 0 0 0\n450 0 0 0 0\n450 0 0 0 0\n";
+  std::mt19937_64 engine(7);
+  int refused = 0;
+  for (const std::string& text : {p.header + block(p, 450, 1), modtran5, mystic})
+    for (int trial = 0; trial < 150; ++trial) {
+      std::string broken = text;
+      const std::size_t at = engine() % broken.size(), length = engine() % 40;
+      if (trial % 3 == 0) broken[at] = " \t\n-#,.eE0169aV\0"[engine() % 17];
+      if (trial % 3 == 1) broken.erase(at, length);
+      if (trial % 3 == 2) broken.insert(at, broken.substr(at, length));
+      const std::string message = complaint([&] {
+        if (text[0] == '#')
+          skyOf(broken);
+        else
+          skyOf(Listing(broken, broken, "# unit: sr^-1\n# convention: malus\n") / "sky.csv");
+      });
+      refused += message != "read";
+    }
+  EXPECT_GT(refused, 100);
 }
 
 // The files that a table names belong to the scene, which records them and sends them to other machines.
