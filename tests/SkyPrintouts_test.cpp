@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
+#include <random>
 
 #include "Program.hpp"
 #include "malus/air/RayleighSky.hpp"
@@ -16,6 +18,8 @@
 #include "malus/air/TableSky.hpp"
 #include "malus/base/Angles.hpp"
 #include "malus/base/Error.hpp"
+#include "malus/files/SceneReader.hpp"
+#include "malus/render/Scene.hpp"
 
 using namespace malus;
 
@@ -134,17 +138,20 @@ const std::string cards =
     " TMF 2    2    2    1    0    0    0    0    0    0    1    0    0   0.000   0.20\n"
     "   0.00000 100.00000  80.00000   0.00000   0.00000   0.00000    0          0.00000\n"
     "    MIDLATITUDE SUMMER\n";
+// With DISORT, in the widths of MODTRAN 5: F8.2, F11.8, E11.4, 11X, 6E11.4, 2E9.2, F8.3, F7.4, E11.4, F11.3.
+std::string row(double wavenumber, double radiance) {
+  return fmt::format(
+      "{:8.2f}{:11.8f}{:11.4E}{:11}{:11.4E}{:11.4E}{:11.4E}{:11.4E}{:11.4E}{:11.4E}{:9.2E}{:9."
+      "2E}"
+      "{:8.3f}{:7.4f}{:11.4E}{:11.3f}\n",
+      wavenumber, 0.75012345, 0.0, "", 0.0, radiance, radiance / 2, 0.0, 0.0, radiance, 0.0,
+      3.21e-6, 0.288, 0.0, 5.5e-6, 2500.123);
+}
 const std::string modtran5 =
     cards +
     "    FREQ  TOT_TRANS  PTH_THRML  THRML_SCT  SURF_EMIS   SOL_SCAT  SING_SCAT  GRND_RFLT  "
-    "DRCT_RFLT  TOTAL_RAD  REF_SOL  SOL@OBS   DEPTH DIR_EM    TOA_SUN BBODY_T[K]\n"
-    " 19000.00 0.79012345 0.0000E+00 0.0000E+00 0.0000E+00 2.0000E-06 1.0000E-06 0.0000E+00 "
-    "0.0000E+00 2.0000E-06 0.0E+00 3.21E-06   0.236 0.0000 5.5000E-06   2500.000\n"
-    " 20000.00 0.75012345 0.0000E+00 0.0000E+00 0.0000E+00 1.0000E-06 0.5000E-06 0.0000E+00 "
-    "0.0000E+00 1.0000E-06 0.0E+00 3.21E-06   0.288 0.0000 5.5000E-06   2500.000\n"
-    " 21000.00 0.70012345 0.0000E+00 0.0000E+00 0.0000E+00 3.0000E-06 1.0000E-06 0.0000E+00 "
-    "0.0000E+00 3.0000E-06 0.0E+00 3.21E-06   0.357 0.0000 5.5000E-06   2500.000\n"
-    " -9999.\n";
+    "DRCT_RFLT  TOTAL_RAD  REF_SOL  SOL@OBS   DEPTH DIR_EM    TOA_SUN BBODY_T[K]\n" +
+    row(19000, 2e-6) + row(20000, 1e-6) + row(21000, 3e-6) + " -9999.\n";
 }  // namespace
 
 // At the nodes the sky is the one that was printed, to the seven digits that were; the cosines have six, which at a zenith angle
@@ -277,15 +284,25 @@ TEST(SkyPrintoutsByHand, ModtranInItsForms) {
       "  WAVLEN(NM)      TRAN  PTH_THRML  TOTAL_RAD\n 500. 0.75 0.0 "
       "40.0\n";
   EXPECT_NEAR(Listing(nanometres, nanometres).special().getScalar(), 0.4, 1e-12);
-  const std::string commas = "FREQ (CM-1),TOT TRANS,TOTAL RAD\n20000,0.75,1e-06\n";
+  // a run without the sun, F8.2, F11.8, 2(E11.4, 11X), 2E22.4, F26.3, F7.4, F22.3: 10 um
+  const std::string thermal =
+      modtran5.substr(0, modtran5.find("19000.00")) +
+      fmt::format(
+          "{:8.2f}{:11.8f}{:11.4E}{:11}{:11.4E}{:11}{:22.4E}{:22.4E}{:26.3f}{:7.4f}{:22.3f}\n",
+          1000.0, 0.5, 4e-6, "", 0.0, "", 0.0, 4e-6, 0.693, 0.0, 260.0) +
+      " -9999.\n";
+  const auto infrared = SpectralGrid::make({1e4});
+  const Listing listing(thermal, thermal);
+  const TableSky warm(readSkyTable(listing / "sky.csv", *infrared), infrared);
+  EXPECT_NEAR(ask(warm, 80, 30).getScalar(), 4e-3, 1e-12);
+  const std::string commas = "FREQ (CM-1),TOT TRANS,PTH THRML,TOTAL RAD\n20000,0.75,,1e-06\n";
   EXPECT_NEAR(Listing(commas, commas).special().getScalar(), 0.4, 1e-12);
 }
 
 TEST(SkyPrintoutsByHand, RunsOfATape7) {
   const Scratch scratch;
   std::string brighter = modtran5;
-  for (std::size_t at; (at = brighter.find(" 1.0000E-06 0.0E+00")) != brighter.npos;)
-    brighter.replace(at, 11, " 4.0000E-06");
+  brighter.replace(brighter.find(row(20000, 1e-6)), row(0, 0).size(), row(20000, 4e-6));
   put(scratch / "tape7", modtran5 + brighter);
   const auto write = [&](const std::string& run) {
     put(scratch / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout" +
@@ -370,19 +387,27 @@ TEST(SkyPrintoutsRefusal, Listings) {
     special.replace(special.find(old), old.size(), fresh);
     return Listing(modtran5, special).refused();
   };
-  has(swapped("2.0000E-06 0.0E+00", "-2.000E-06 0.0E+00"), "special.txt:5: TOTAL_RAD = -");
-  has(swapped("0.0000E+00 2.0000E-06 1", "0.0000E+002.0000E-06 1"),
-      "special.txt:5: TOTAL_RAD = 15 numbers: but line 4 names 16 columns");
+  has(swapped("2.0000E-06 0.00E+00", "-2.000E-06 0.00E+00"), "special.txt:5: TOTAL_RAD = -");
+  has(swapped("2.0000E-06 0.00E+00", "           0.00E+00"),
+      "special.txt:5: TOTAL_RAD: the number is missing");
+  for (const char* broken :
+       {"2.0000E-06 0.00E 00", "2.0000E-0620.00E+00", "2.0000E-06 0 00E+00"})
+    has(swapped("2.0000E-06 0.00E+00", broken), "special.txt:5: TOTAL_RAD");
+  has(swapped("2500.123", "2500.123 1"),
+      "special.txt:5: TOTAL_RAD = 17 columns: but line 4 has 16 names");
   has(swapped("TOTAL_RAD", "TOTAL_RED"), "special.txt: TOTAL_RAD: is named in no line");
   has(swapped("    FREQ  TOT", "    SPAM  TOT"), "special.txt:4: SPAM: is not the spectrum of");
   has(swapped("    FREQ  TOT_TRANS", "    FREQ LOS"),
       "is not the spectrum of one line of sight");
-  has(swapped(" 21000.00", " 19500.00"), "special.txt:7: FREQ = 19500.00: is out of order");
-  has(swapped(" 21000.00", " 20000.00"), "special.txt:7: FREQ = 20000.00: is out of order");
-  has(swapped(" 21000.00", " 22000.00"),
+  has(swapped("21000.00", "19500.00"), "special.txt:7: FREQ = 19500.00: is out of order");
+  has(swapped("21000.00", "20000.00"), "special.txt:7: FREQ = 20000.00: is out of order");
+  has(swapped("21000.00", "22000.00"),
       "sky.csv:8: printout = special.txt: has other wavelengths or components than common.txt");
-  has(swapped(modtran5.substr(modtran5.find(" 19000.00")), " -9999.\n"),
+  has(swapped(modtran5.substr(modtran5.find("19000.00")), " -9999.\n"),
       "special.txt:4: is followed by no numbers");
+  const Listing empty(modtran5, modtran5);
+  put(empty / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout\n");
+  has(empty.refused(), "sky.csv: printout: names no printout; give a row");
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
   has(gone.refused(), "sky.csv:8: printout = special.txt: is not there; name a file");
@@ -413,6 +438,31 @@ TEST(SkyPrintoutsRefusal, Mystic) {
   has(deviations.refused(), "holds standard deviations, not radiances");
 }
 
+// A byte changed, a piece cut out or doubled: whatever becomes of a text, it is read or refused in one line.
+TEST(SkyPrintoutsInvariant, BrokenTextsAreReadOrRefused) {
+  Printing p;
+  p.last_phi = 180;
+  const std::string mystic = "450 0 0 0 1\n450 0 0 0 0\n450 0 0 0 0\n450 0 0 0 0\n";
+  std::mt19937_64 engine(7);
+  int refused = 0;
+  for (const std::string& text : {p.header + block(p, 450, 1), modtran5, mystic})
+    for (int trial = 0; trial < 150; ++trial) {
+      std::string broken = text;
+      const std::size_t at = engine() % broken.size(), length = engine() % 40;
+      if (trial % 3 == 0) broken[at] = " \t\n-#,.eE0169aV\0"[engine() % 17];
+      if (trial % 3 == 1) broken.erase(at, length);
+      if (trial % 3 == 2) broken.insert(at, broken.substr(at, length));
+      const std::string message = complaint([&] {
+        if (text[0] == '#')
+          skyOf(broken);
+        else
+          skyOf(Listing(broken, broken, "# unit: sr^-1\n# convention: malus\n") / "sky.csv");
+      });
+      refused += message != "read";
+    }
+  EXPECT_GT(refused, 100);
+}
+
 // The files that a table names belong to the scene, which records them and sends them to other machines.
 TEST(SkyPrintoutsInvariant, FilesOfATable) {
   const Listing listing(modtran5, modtran5);
@@ -420,6 +470,20 @@ TEST(SkyPrintoutsInvariant, FilesOfATable) {
   ASSERT_EQ(files.size(), 12u);
   EXPECT_EQ(files[5], listing / "special.txt");
   EXPECT_TRUE(skyPrintoutsOf(listing / "special.txt").empty());
+}
+
+TEST(SkyPrintoutsInvariant, AScene) {
+  const Listing listing(modtran5, modtran5);
+  const std::string scene = R"({"malus": 1, "bands": {"wavelength_nm": [500]},
+    "geometry": [{"ground": {"z_m": 0, "material": "plate"}}],
+    "materials": {"plate": {"model": "lambertian", "reflectance": 0.5}},
+    "sky": {"model": "table", "file": "sky.csv"},
+    "sensor": {"kind": "framing", "width": 1, "height": 1, "field_of_view_deg": 1},
+    "platform": {"path": "fixed", "position_m": [0, 0, 10], "look_at_m": [0, 0, 0], "up": [0, 1, 0]}})";
+  const Scene read = readSceneText(scene, "scene.json", listing.path);
+  EXPECT_NE(std::ranges::find(read.files, listing / "special.txt"), read.files.end());
+  EXPECT_NEAR(ask(*read.world.sky, 80, 30).getScalar(), 0.4, 1e-12);
+  EXPECT_FALSE(read.world.sky->polarized());
 }
 
 // As a user meets them: an answer of malus sky, and a broken file with exit code 2 and one line.
