@@ -503,6 +503,15 @@ TEST(SkyPrintoutsInvariant, MalusSkyTakesThem) {
   for (int k = 0; k < 3; ++k)
     EXPECT_NEAR(answer.number(0, std::string(1, "IQU"[k])), expected.getStokes(k),
                 1e-4 * expected.getScalar());
+  // the sun is in the south; a clear sky has two neutral points near it and one far from it, and none in the zenith
+  const Outcome picture = malusIn(
+      scratch.path, "sky --model table --file sky.out --wavelength-nm 500 --picture dome");
+  ASSERT_EQ(picture.code, 0) << picture.err;
+  put(scratch / "points.csv", picture.out);
+  const Table points = Table::read(scratch / "points.csv");
+  EXPECT_GE(points.rows(), 1u);
+  for (std::size_t row = 0; row < points.rows(); ++row)
+    EXPECT_GT(points.number(row, "zenith_deg"), 20) << picture.out;
   put(scratch / "sky.out", uvspec().substr(0, 9000));
   const Outcome bad = malusIn(scratch.path, question);
   EXPECT_EQ(bad.code, 2);
