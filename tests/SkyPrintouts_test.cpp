@@ -316,11 +316,12 @@ TEST(SkyPrintoutsByHand, RunsOfATape7) {
               1e-7);  // 1e-6 deg beside
   const auto refused = [&] { return complaint([&] { skyOf(scratch / "sky.csv"); }); };
   write(",3");
-  has(refused(), "tape7: run = 3: the file holds 2 runs; say which one in a column run");
+  has(refused(),
+      "sky.csv:5: run = 3: is no run of tape7, which holds 2; say which one in a column run");
   write(",1.5");
-  has(refused(), "sky.csv:5: run = 1.5: is no number of a run");
+  has(refused(), "sky.csv:5: run = 1.5: is no run of tape7");
   write("");
-  has(refused(), "the file holds 2 runs");
+  has(refused(), "sky.csv:4: printout = tape7: is no run of tape7, which holds 2");
 }
 
 // Half a circle of MYSTIC's: the other half has the opposite U. One azimuth alone must be declared.
@@ -424,7 +425,7 @@ TEST(SkyPrintoutsRefusal, Listings) {
   has(swapped("21000.00", "22000.00"),
       "sky.csv:9: printout = special.txt: has other wavelengths or components than common.txt");
   has(swapped(modtran5.substr(modtran5.find("19000.00")), " -9999.\n"),
-      "special.txt:4: is followed by no numbers");
+      "special.txt: run 1: has no numbers");
   const Listing empty(modtran5, modtran5);
   put(empty / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout\n");
   has(empty.refused(), "sky.csv: printout: names no printout; give a row");
