@@ -58,7 +58,7 @@ bench: need-program $(BUILD)/CMakeCache.txt ## measure pictures and inner loops 
 	@$(BUILD)/malus_image_bench
 	@$(BUILD)/malus_bench
 	@$(BUILD)/malus_sky_bench
-	@tests/bench/commands.py $(BUILD)/malus
+	@tests/bench/commands.py $(BUILD)/malus $(BUILD)/commands.csv
 	@$(NEED) valgrind
 	@tests/bench/instructions.py $(BUILD)/malus $(BUILD)/instructions.csv
 	@! [ -d $(BUILD)/python/malus ] || PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/bench/python.py
