@@ -94,6 +94,30 @@ TEST(SceneGroundIdentity, MeshesCountWithTheirAreaInPlanView) {
               1e-4);
 }
 
+// A quarter of the image is bright, and a factor of one half lies over all of it.
+TEST(SceneGroundIdentity, OfAMapTheMeanOfItsImageCounts) {
+  const Scratch scratch;
+  put(scratch / "kinds.pgm", "P2 2 2 255\n1 2 2 2\n");
+  put(scratch / "half.pgm", "P2 1 1 255\n255\n");
+  json scene = sceneOf(plane, {{"bright", plate}, {"dark", plate}}, {{"model", "rayleigh"}});
+  scene["materials"]["bright"]["reflectance"] = 0.6;
+  scene["maps"] = {{"kinds",
+                    {{"image", "kinds.pgm"},
+                     {"over_m", {0, 0, 2, 2}},
+                     {"materials", {{"1", "bright"}, {"2", "dark"}}}}},
+                   {"shade",
+                    {{"image", "half.pgm"},
+                     {"over_m", {0, 0, 2, 2}},
+                     {"reflectance_factor", {{"material", "kinds"}, {"range", {0, 0.5}}}}}}};
+  const auto albedoUnder = [&](const char* material) {
+    scene["geometry"][0]["ground"]["material"] = material;
+    return toldAlbedo(readSceneText(scene.dump(), "s.json", scratch.path));
+  };
+  EXPECT_NEAR(albedoUnder("kinds"), 0.25 * 0.6 + 0.75 * 0.2, 1e-4);
+  EXPECT_NEAR(albedoUnder("shade"), (0.25 * 0.6 + 0.75 * 0.2) / 2, 1e-4);
+  EXPECT_NEAR(albedoUnder("dark"), 0.2, 1e-4) << "negative control";
+}
+
 // Over calm water the albedo is between Fresnel's reflectance at 60 degrees and its mean, which is 0.0664 for n = 1.333 by the
 // integral below; facets that hide one another at the horizon take a little.
 TEST(SceneGroundIdentity, CalmWaterReturnsWhatFresnelSays) {
