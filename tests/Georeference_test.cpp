@@ -234,6 +234,13 @@ TEST(SensorsInScenesIdentity, TheRecordSaysWhatTheSensorIs) {
                        {"velocity_m_s", {50, 0, 0}},
                        {"rotation_deg_s", {0, 0, 90}}};
   const Workplace place(scene);
+  const Outcome dry = place.render("--dry-run");
+  EXPECT_NE(
+      dry.out.find("optics    lens with k1 -0.1, k2 0, k3 0, p1 0, p2 0; airy, cutoff "
+                   "1.34804 cycles per px; detectors of 0.8 x 0.5 px; exposed for 0.02 s\n"
+                   "earth     origin at 43.084500 deg north, -77.674900 deg east, 168 m\n"),
+      std::string::npos)
+      << dry.out;
   const Outcome outcome = place.render();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(
