@@ -32,8 +32,8 @@ TEST(FormatRegistryIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
   const Scratch scratch;
   put(scratch / "s.json", small_scene);
   const FrameShape shape{8, 6, 3, {0, 1, 2, 3}};
-  for (const std::string chosen :
-       {"", "exr", "pictures", "cube", "truth", "netcdf", "pictures,exr"}) {
+  for (const std::string chosen : {"", "exr", "pictures", "cube", "truth", "netcdf", "geotiff",
+                                   "ground", "pictures,exr"}) {
     const std::string flag = chosen.empty() ? "" : " --write " + chosen;
     const Outcome outcome = malusIn(scratch.path, "render s.json --out o" + flag);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -203,7 +203,7 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(unknown.err,
             "command line: --write = pictues: is not an output of malus; did you mean "
             "pictures? known "
-            "are: cube, error, exr, netcdf, pictures, truth\n");
+            "are: cube, error, exr, geotiff, ground, netcdf, pictures, truth\n");
   EXPECT_EQ(
       malusIn(scratch.path, "render s.json --out o --write cube,zarr").err,
       "command line: --write = zarr: is not an output of malus; write netcdf, and turn it "

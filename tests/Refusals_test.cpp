@@ -27,15 +27,20 @@ namespace {
 json soundScene() {
   return json::parse(R"({
     "malus": 1, "title": "sound", "bands": {"wavelength_nm": [550]},
+    "georeference": {"latitude_deg": 43, "longitude_deg": -77, "height_m": 168},
     "geometry": [{"obj": "t.obj", "material": "paint", "scale": 1, "rotate_deg": [0, 0, 0], "translate_m": [0, 0, 1]},
                  {"ground": {"z_m": 0, "material": "paint"}}],
     "materials": {"paint": {"model": "lambertian", "reflectance": 0.3}},
     "sun": {"zenith_deg": 30, "azimuth_deg": 90, "irradiance_W_m2_nm": 1, "half_angle_deg": 0.2665},
     "sky": {"model": "uniform", "radiance_W_m2_sr_nm": 0.05},
     "sensor": {"kind": "framing", "width": 8, "height": 8, "focal_length_mm": 15, "pixel_pitch_um": 400,
-      "polarimeter": {"cameras": [{"name": "P0", "polarizer_deg": 0}], "recover": []}},
+      "distortion": {"k1": -0.01, "k2": 0.001, "k3": 0.0001, "p1": 0.001, "p2": -0.001}, "detector_size_px": [0.9, 0.8],
+      "point_spread": {"kind": "gaussian", "fwhm_px": 1}, "exposure_time_s": 0.01,
+      "polarimeter": {"cameras": [{"name": "P0", "polarizer_deg": 0}], "recover": [], "bad_pixels": [[1, 2]],
+        "noise": {"electrons_per_unit": 1e5, "dark_electrons": 10,
+          "converter": {"bits": 12, "electrons_per_count": 10, "offset_counts": 64}}}},
     "platform": {"path": "straight", "start_m": [0, 0, 15], "look_at_m": [0, 0, 0], "up": [0, 1, 0],
-      "velocity_m_s": [1, 0, 0], "frames": 2, "interval_s": 1},
+      "velocity_m_s": [1, 0, 0], "rotation_deg_s": [0, 0, 1], "frames": 2, "interval_s": 1},
     "radiometry": {"sampling": "importance", "rays": [4], "seed": 1}
   })");
 }
@@ -157,6 +162,7 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
 // 1000 frames of a day each at a million m/s: each number is allowed, and the camera beyond the world.
 TEST(RefusalsIdentity, ACameraThatMovesOutOfTheWorldIsRefused) {
   json scene = with("/platform/frames", 1000);
+  scene["sensor"].erase("exposure_time_s");  // which would end after 1e9 s by itself
   scene["platform"]["interval_s"] = 86400;
   scene["platform"]["velocity_m_s"] = {1e5, 0, 0};
   expectRefusal(Workplace(scene), "render s.json --dry-run",
