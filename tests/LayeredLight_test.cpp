@@ -388,6 +388,63 @@ TEST(LayeredLightInvariant, TheirMatricesAreRealisable) {
   EXPECT_LT(amplified, -0.01);
 }
 
+// Time reversed, light goes back its way. Its s turns round and its p does not, and Jones's matrix becomes its transpose: of
+// Mueller's matrix the transpose, its row and its column of S2 with the other sign. The way back to the sun lies on the other
+// side of the azimuth, where a mirror image has the signs of S2 and S3 reversed: what is left of both is S3. Light that comes
+// through goes back through the layers from below; upside down that is another mirror image, and what is left is S2.
+TEST(LayeredLightInvariant, AllSixteenElementsMayBeExchanged) {
+  const std::vector<AirLayer> layers{{{rayleighScatterer(0.03), 0.2}},
+                                     {{spheroids(), 0.4, 0.95}}},
+      turned{layers[1], layers[0]};
+  const double a = 0.85, b = 0.3, whole = 0.6;
+  const auto off = [](const CDMuellerMatrix& there, double there_sun,
+                      const CDMuellerMatrix& back, double back_sun, int reversed) {
+    double most = 0;
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l) {
+        const double sign = (k == reversed) == (l == reversed) ? 1 : -1;
+        most = std::max(most, std::abs(there.getMueller(k, l) / there_sun -
+                                       sign * back.getMueller(l, k) / back_sun));
+      }
+    return most * there_sun / there.getScalar();
+  };
+  const FourSuns over(layers, whole, a, copper(), {b}),
+      over_back(layers, whole, b, copper(), {a});
+  const FourSuns through(layers, whole, a, {}, {b}), through_back(turned, whole, b, {}, {a}),
+      unturned(layers, whole, b, {}, {a});
+  for (const double phi : {0.3, 1.5, 2.8}) {
+    EXPECT_LT(off(over(0, phi, true), a, over_back(0, phi, true), b, 3), 3e-6) << phi;
+    EXPECT_GT(off(over(0, phi, true), a, over_back(0, phi, true), b, 2), 1e-3);  // control
+    EXPECT_LT(off(through(0, phi, false), a, through_back(0, phi, false), b, 2), 3e-6) << phi;
+    EXPECT_GT(off(through(0, phi, false), a, through_back(0, phi, false), b, 3),
+              1e-3);  // controls
+    EXPECT_GT(off(through(0, phi, false), a, unturned(0, phi, false), b, 2), 1e-3);
+  }
+}
+
+// Kokhanovsky et al. 2010, molecular case: six digits are promised, seven are printed, and the solution keeps 1e-8 of an
+// irradiance of pi.
+TEST(LayeredLightPublished, KokhanovskysMolecularLayer) {
+  const Table table = Table::read("validation/printed/kokhanovsky2010.csv");
+  std::vector<double> views;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    views.push_back(std::cos(table.number(row, "vza_deg") * degree));
+  const LayeredLight light({{{rayleighScatterer(0), 0.3262}}}, 0.5, {}, 2 * pi, views,
+                           {0, 0.3262});
+  double worst = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double I = table.number(row, "I"), phi = table.number(row, "phi_deg") * degree;
+    const CDStokesVector ours =
+        table.cell(row, "dir") == "UP" ? light.up(row, phi, 0) : light.down(row, phi, 1);
+    worst = std::max(worst, std::abs(ours.getStokes(0) - I) / I);
+    worst = std::max(worst, std::abs(ours.getStokes(1) - table.number(row, "minus_Q")) / I);
+    if (!table.cell(row, "U").empty())
+      worst = std::max(worst, std::abs(ours.getStokes(2) - table.number(row, "U")) / I);
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_GT(worst, 1e-9);  // digits were compared
+}
+
 // A sun at the horizon lights the top alone: the balance over white ground against what comes in, and the exact solution to
 // what that keeps of reciprocity there (ch. AddingDoubling, whose test this is).
 TEST(LayeredLightInvariant, AGrazingSunKeepsTheBalance) {

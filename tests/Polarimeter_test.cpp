@@ -164,7 +164,7 @@ TEST(PolarimeterInvariant, PartsAreTheVeryNumbersOfTheWhole) {
   std::size_t full = 0, bits = 0;
   for (const Tile& t : {Tile{0, 0, 3, 3}, Tile{3, 0, 5, 3}, Tile{0, 3, 5, 4}}) {
     const Measurement part = measure(instrument, cut(instrument.polarimeter.around(t)), t, 3);
-    full += part.full_wells;
+    full += part.clipped.full_wells;
     std::size_t i = 0;
     for (std::size_t y = t.y0; y < t.y1; ++y)
       for (std::size_t x = t.x0; x < t.x1; ++x, ++i)
@@ -176,7 +176,7 @@ TEST(PolarimeterInvariant, PartsAreTheVeryNumbersOfTheWhole) {
         }
   }
   EXPECT_EQ(bits, light.size());
-  EXPECT_EQ(full, whole.full_wells);
+  EXPECT_EQ(full, whole.clipped.full_wells);
   EXPECT_GT(full, 0u);
   EXPECT_NE(measure(instrument, light, {0, 0, width, height}, 4).readings, whole.readings);
 }
@@ -292,7 +292,7 @@ TEST(PolarimeterIdentity, NoiseOfRecoveredLightByHand) {
   light[4 * 3] = 1.5;
   const Instrument full{p, {"a"}, {10'000, 0, 6500, 1}, true};
   const Measurement made = measure(full, light, p.whole(), 0, none);
-  EXPECT_EQ(made.full_wells, 1u);
+  EXPECT_EQ(made.clipped.full_wells, 1u);
   EXPECT_TRUE(std::isnan(made.errors[0]));
 }
 
@@ -349,7 +349,7 @@ TEST(PolarimeterIdentity, NoiseThatCannotBeIsRefused) {
 
 TEST(PolarimeterIdentity, AFullWellHoldsNoMore) {
   std::vector<double> readings{1, 100, 3};
-  EXPECT_EQ(addNoise(readings, {10, 0, 200, 1}), 1u);
+  EXPECT_EQ(addNoise(readings, {10, 0, 200, 1}).full_wells, 1u);
   EXPECT_EQ(readings[1], 20.0);
   EXPECT_LT(readings[2], 20.0);
 }
@@ -362,9 +362,71 @@ TEST(PolarimeterInvariant, AWellIsFullFromItsLastElectronOn) {
   double below = 0, term = std::exp(-mean);
   for (int k = 0; k < 20; term *= mean / ++k) below += term;
   std::vector<double> readings(n, 1.0);
-  const auto full = double(addNoise(readings, {mean, 0, mean, 5}));
+  const auto full = double(addNoise(readings, {mean, 0, mean, 5}).full_wells);
   const double error = std::sqrt(below * (1 - below) / n);
   EXPECT_NEAR(full / n, 1 - below, 5 * error);
   EXPECT_GT(term, 10 * error) << "negative control: the well's last electron is seen";
   for (const double r : readings) EXPECT_LE(r, 1.0);
+}
+
+// By hand in the chapter: twelve bits, ten electrons a count, an offset of 64, 1e5 electrons for a unit.
+TEST(PolarimeterIdentity, CountsAreThoseOfTheChapter) {
+  DetectorNoise noise{1e5, 0, never, 1};
+  noise.converter = Converter{12, 10, 64};
+  std::vector<double> readings{0.5, 0.5, -1};
+  const Clipped clipped = addNoise(readings, noise);
+  EXPECT_NEAR(readings[0], 0.4031, 1e-12);
+  EXPECT_EQ(clipped.saturated, 2u);
+  EXPECT_NEAR(readings[2], -64e-4, 1e-12);  // -1e5 electrons: below count 0
+  EXPECT_EQ(clipped.below_zero, 1u);
+  EXPECT_EQ(clipped.full_wells, 0u);
+  std::vector<double> fine(1000, 0.2);
+  EXPECT_FALSE(addNoise(fine, noise).any());
+  for (const double r : fine)
+    EXPECT_NEAR(r / 1e-4, std::round(r / 1e-4), 1e-8) << "a whole count";
+  noise.converter->bits = 0;
+  EXPECT_THROW(addNoise(fine, noise), MathError);
+  noise = {0, 0, never, 1};
+  noise.dark_electrons = 5;
+  EXPECT_THROW(addNoise(fine, noise), MathError);
+}
+
+// Equation (covariance): light and dark electrons, read noise and the twelfth of a step. The noise of 20 electrons exceeds half
+// a step of 30 only just, and the harmonic of the rounding's error is below exp(-2 (pi 20 / 30)^2) = 2e-4 of a step.
+TEST(PolarimeterInvariant, CountsHaveTheirMeanAndVariance) {
+  constexpr std::size_t n = 40000;
+  DetectorNoise noise{1e4, 10, never, 7};
+  noise.dark_electrons = 140, noise.converter = Converter{16, 30, 100};
+  std::vector<double> readings(n, 0.016);  // 160 electrons
+  EXPECT_FALSE(addNoise(readings, noise).any());
+  double sum = 0, squares = 0;
+  for (const double r : readings) sum += r, squares += (r - 0.016) * (r - 0.016);
+  const double variance = (160 + 140 + 100 + 900.0 / 12) / 1e8;
+  EXPECT_NEAR(sum / n, 0.016, 5 * std::sqrt(variance / n));
+  EXPECT_NEAR(squares / n, variance, 5 * variance * std::sqrt(2.1 / n));
+  EXPECT_GT(std::abs(squares / n - (variance - 75e-8)), 5 * variance * std::sqrt(2.1 / n))
+      << "the negative control: without the rounding";
+  EXPECT_GT(std::abs(squares / n - (variance - 140e-8)), 5 * variance * std::sqrt(2.1 / n))
+      << "the negative control: without the dark electrons";
+}
+
+TEST(PolarimeterIdentity, ABadPixelIsFlaggedInEachWindowThatHasIt) {
+  const Polarimeter p(mosaicOf(polarsens), width, height, bands, 2, 2);
+  Instrument instrument{p, {"I"}, {500, 3, never, 2}, true};
+  const Measurement good = measure(instrument, varied(), p.whole());
+  instrument.bad_pixels = {1 * width + 2};
+  const Measurement made = measure(instrument, varied(), p.whole());
+  EXPECT_EQ(made.flagged, bands);
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::size_t at = y * width + x;
+      const bool window = x >= 1 && x <= 2 && y <= 1;
+      for (std::size_t b = 0; b < bands; ++b) {
+        EXPECT_EQ(std::isnan(made.readings[at * bands + b]), x == 2 && y == 1);
+        EXPECT_EQ(std::isnan(made.stokes[4 * (at * bands + b)]), window) << x << ' ' << y;
+        if (!window) {
+          EXPECT_EQ(made.stokes[4 * (at * bands + b)], good.stokes[4 * (at * bands + b)]);
+        }
+      }
+    }
 }

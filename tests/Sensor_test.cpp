@@ -55,6 +55,24 @@ TEST(PlatformIdentity, PathsMoveStareAndTurn) {
   EXPECT_THROW(Platform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 0, 1}, {0}, 1, 0), MathError);
 }
 
+// By hand in the chapter: about its up axis by a quarter, and back in the world after a whole turn.
+TEST(PlatformIdentity, ATurningCameraLooksWestAfterAQuarter) {
+  const Platform yaw = Platform::fixed(nadir, 1, 0).turning({0, pi / 2, 0});
+  near(yaw.at(0, 1).right, {0, 0, -1});
+  near(yaw.at(0, 1).back, {1, 0, 0});
+  near(yaw.at(0, 1).up, nadir.up);
+  near(yaw.at(0, 4).right, nadir.right);
+  const Platform pitch = Platform::fixed(nadir).turning({pi / 2, 0, 0});
+  near(pitch.at(0, 1).back, {0, -1, 0});  // its up, which was north, now points up
+  near(pitch.at(0, 1).up, {0, 0, 1});
+  const Platform roll = Platform::straight(nadir, {1, 0, 0}, 3, 1).turning({0, 0, pi / 2});
+  near(roll.at(2).right, {-1, 0, 0});
+  near(roll.at(2).position, {2, 0, 15});
+  EXPECT_THROW(
+      Platform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 1, 0}, {0}, 1, 0).turning({1, 0, 0}),
+      MathError);
+}
+
 // From above, x to the right and y up: who stands behind the camera sees it turn clockwise, its top to the right.
 TEST(PlatformIdentity, AStaringCameraRollsByFrame) {
   const auto staring = [](std::vector<double> roll_rad) {

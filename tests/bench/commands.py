@@ -1,15 +1,17 @@
 #!/usr/bin/python3
 """What a user waits for: whole commands with all their files, on the copper chunky bar.
 
-    commands.py MALUS
+    commands.py MALUS [OUT.csv]
 
 Looks for the fewest rays from the first surface whose error of S0 (rms over mean, against a picture with many) is
 below a peer's, and prints for each command the least seconds on the clock of some runs, the CPU seconds of that run,
-and the seconds that were aimed at.
+and the seconds that were aimed at. Of the aimed-at errors it also times the cube alone, without pictures, truth and products.
+With OUT.csv it writes the same as a record (validation/commands.csv is one).
 
 Then the parking lot, to 2 % in each pixel: by --until, and by so many batches of every pixel that the worst has it. The latter
 takes minutes, so their number is computed from the errors of 520 batches, and their time from that of one.
 """
+import datetime
 import os
 import pathlib
 import re
@@ -23,10 +25,11 @@ import numpy as np
 import numpy.typing as npt
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
+NAN = float("nan")
 SCENE = SCENES / "chunky-bar-copper.json"
 TURNS = 5
 RAYS = (2, 3, 4, 5, 6, 7, 9, 12, 17, 25, 33)
-ERRORS = ((0.167, 0.12), (0.116, 0.15))  # of S0, and the seconds aimed at
+ERRORS = ((0.167, 0.12, "band1"), (0.116, 0.15, "band1Finer"))  # of S0, the seconds aimed at, the name in the record
 
 
 def scene(work: pathlib.Path, side: int, bands: int, rays: int, seed: int = 1) -> pathlib.Path:
@@ -73,8 +76,8 @@ def s0(path: pathlib.Path) -> npt.NDArray[np.float64]:
     return cube.reshape(-1, 4)[:, 0].astype(float)
 
 
-def best(malus: str, path: pathlib.Path) -> tuple[float, float]:
-    return min(render(malus, path) for _ in range(TURNS))
+def best(malus: str, path: pathlib.Path, *flags: str) -> tuple[float, float]:
+    return min(render(malus, path, *flags) for _ in range(TURNS))
 
 
 def relative_errors(path: pathlib.Path, bands: int) -> npt.NDArray[np.float64]:
@@ -104,7 +107,10 @@ def parking_lot(work: pathlib.Path) -> pathlib.Path:
     return path
 
 
-def to_two_percent(malus: str, work: pathlib.Path) -> None:
+Rows = list[tuple[str, float, float, float]]  # work, seconds, CPU seconds, seconds aimed at; NaN where it has none
+
+
+def to_two_percent(malus: str, work: pathlib.Path) -> Rows:
     path = parking_lot(work)
     few = render(malus, path, "--batches", "8")[1]
     many = render(malus, path, "--batches", "520")[1]
@@ -117,17 +123,29 @@ def to_two_percent(malus: str, work: pathlib.Path) -> None:
           f"{'evenly (worst pixel of 520 batches: ' + format(errors.max(), '.2f') + ')':56}{evenly:9.1f}\n"
           f"{'--until 2%':56}{until:9.1f}   ratio {until / evenly:.3f}; above 2 %: {100 * (reached > 0.02).mean():.1f} % of the pixels, "
           f"above 4 %: {100 * (reached > 0.04).mean():.1f} %")
+    return [("lotEvenly", NAN, evenly, NAN), ("lotUntil", NAN, until, evenly / 3)]
+
+
+def write(rows: Rows, path: str) -> None:
+    """The record: what chapter "Which sampling" of the book prints as its table of whole commands."""
+    head = ("# title: Seconds of whole commands with all their files, copper chunky bar and parking lot\n"
+            f"# source: tests/bench/commands.py, {os.cpu_count()} cores\n# date: {datetime.date.today().isoformat()}\n")
+    lines = [",".join([work, *("" if number != number else f"{number:.3g}" for number in numbers)]) for work, *numbers in rows]
+    pathlib.Path(path).write_text(head + "work,clock_s,cpu_s,aim_s\n" + "\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main() -> None:
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     malus = os.path.abspath(sys.argv[1])
     print(f"\n{'whole commands, copper bar, two reflections':56}{'seconds':>9}{'CPU':>7}{'aim':>7}")
 
-    def tell(name: str, path: pathlib.Path, aim: float) -> None:
-        seconds, cpu = best(malus, path)
+    rows: Rows = []
+
+    def tell(name: str, key: str, path: pathlib.Path, aim: float, *flags: str) -> None:
+        seconds, cpu = best(malus, path, *flags)
         print(f"{name:56}{seconds:9.2f}{cpu:7.2f}{aim:7.2f}", flush=True)
+        rows.append((key, seconds, cpu, aim))
 
     with tempfile.TemporaryDirectory() as directory:
         work = pathlib.Path(directory)
@@ -139,19 +157,24 @@ def main() -> None:
             path = scene(work, 256, 1, rays)
             render(malus, path)
             errors[rays] = float(np.sqrt(np.mean((s0(path) - reference) ** 2)) / reference.mean())
-        for error, aim in ERRORS:
+        for error, aim, key in ERRORS:
             enough = [rays for rays in RAYS if errors[rays] <= error]
             if not enough:
                 print(f"the error {error} is not reached by {RAYS[-1]} rays")
                 continue
             rays = enough[0]
-            tell(f"1 band to the error {error} (it is {errors[rays]:.3f}, {rays} rays)", scene(work, 256, 1, rays), aim)
+            tell(f"1 band to the error {error} (it is {errors[rays]:.3f}, {rays} rays)", key, scene(work, 256, 1, rays), aim)
             if error == ERRORS[0][0]:
-                tell(f"100 bands to the same error ({rays} rays)", scene(work, 256, 100, rays), 0.35)
-        tell("16 x 16 pixels, 1 band: start-up and files", scene(work, 16, 1, 5), 0.05)
+                tell("the same, only the cube", "band1Cube", scene(work, 256, 1, rays), aim, "--write", "cube")
+                tell(f"100 bands to the same error ({rays} rays)", "band100", scene(work, 256, 100, rays), 0.35)
+                tell("the same, only the cube", "band100Cube", scene(work, 256, 100, rays), 0.35, "--write", "cube")
+        tell("16 x 16 pixels, 1 band: start-up and files", "small", scene(work, 16, 1, 5), 0.05)
         first, _ = min(first_preview(malus, many) for _ in range(TURNS))
         print(f"{'first picture of --progressive, 256 x 256 pixels':56}{first:9.2f}{'':7}{0.1:7.2f}", flush=True)
-        to_two_percent(malus, work)
+        rows.append(("preview", first, NAN, 0.1))
+        rows += to_two_percent(malus, work)
+    if len(sys.argv) == 3:
+        write(rows, sys.argv[2])
 
 
 if __name__ == "__main__":
