@@ -185,7 +185,8 @@ TEST(RefusalsIdentity, AnOpenBodyOfGlassIsRefusedAtItsMaterial) {
       "pane for a sheet");
   scene["materials"]["glass"]["temperature_K"] = 300;
   scene["materials"]["glass"]["model"] = "pane";
-  expectRefusal(Workplace(scene), "render s.json --out a", "belongs to a clear material");
+  expectRefusal(Workplace(scene), "render s.json --out a",
+                "belongs to a material that lets light through");
   scene["materials"]["glass"].erase("temperature_K");
   scene["radiometry"] = {{"sampling", "two-and-a-half"}, {"rays", {9, 1}}};
   expectRefusal(Workplace(scene), "render s.json --out a",
