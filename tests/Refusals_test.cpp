@@ -145,10 +145,10 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
       {"/materials/paint/sigmaa", 1,
        "materials.paint.sigmaa: is not a known key here; known are: reflectance, "
        "polarization_kept, model, "
-       "temperature_K\n"},
+       "temperature_K, thermal\n"},
       {"/materials/paint/reflectancee", 1,
        "did you mean reflectance? known are: reflectance, polarization_kept, model, "
-       "temperature_K\n"},
+       "temperature_K, thermal\n"},
       {"/materials/paint",
        json::parse(
            R"({"model": "dirsig", "reflectance": 0.5, "height": 1e6, "width_deg": 40})"),

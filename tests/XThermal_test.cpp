@@ -26,7 +26,7 @@ TEST(XThermalRegression, TheVerdictsAreTheCommittedOnes) {
   EXPECT_EQ(now, committed);
   EXPECT_EQ(now.at("amplitude"), "reproduced");
   EXPECT_EQ(now.at("lag"), "reproduced");
-  EXPECT_EQ(item.pictures().size(), 4u);
+  EXPECT_EQ(item.pictures().size(), 5u);
   // negative control: paint is polarised at some hour, and not as strongly as its emission
   const auto values = valuesOf(item);
   EXPECT_GT(std::stod(values.at("paint.most")), 0.003);
