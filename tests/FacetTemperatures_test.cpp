@@ -191,7 +191,17 @@ TEST(FacetTemperaturesIdentity, AWarmedWorldGlowsByFacets) {
 
 TEST(FacetTemperaturesIdentity, WhatModelsAbsorb) {
   EXPECT_NEAR(hemisphericalAbsorptance(*matt(0.3)).at(0), 0.7, 1e-9);
-  EXPECT_NEAR(solarAbsorptance(*matt(0.3)), 0.7, 1e-9);
+  // two bands, of which one is in the sun's range and one in that of heat
+  const auto grid = SpectralGrid::make({550.0, 10000.0});
+  CDSpectralVector<double> grey(grid, 0.3);
+  grey[1] = 0.1;
+  const BRDFDiffuse painted(grey);
+  EXPECT_NEAR(meanAbsorptance(painted, 300, 2500, 5772).value(), 0.7, 1e-9);
+  EXPECT_NEAR(meanAbsorptance(painted, 4000, 50000, 300).value(), 0.9, 1e-9);
+  const double sun = planckRadiance(550, 5772), far = planckRadiance(10000, 5772);
+  EXPECT_NEAR(meanAbsorptance(painted, 300, 50000, 5772).value(),
+              (0.7 * sun + 0.9 * far) / (sun + far), 1e-9);
+  EXPECT_FALSE(meanAbsorptance(painted, 1000, 2000, 5772));
   // a mirror of glass: 1 - integral of (Rs + Rp)/2 over u = sin^2; 2e-3 are the integral of emissivityOf and sixteen steps
   double absorbed = 0;
   for (int i = 0; i < 20000; ++i) {

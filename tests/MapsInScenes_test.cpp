@@ -168,6 +168,8 @@ TEST(MapsInScenesIdentity, WhatIsWrongIsNamedWithItsRemedy) {
       "land.pgm: column 1, row 1 has the index 90, which names no material; name the material "
       "of each index",
       place.without(scene, "/maps/land/materials/90"));
+  expect("/materials/rock", {{"model", "pane"}, {"n", 1.5}},
+         "selects \"rock\", which is clear; give clear materials to surfaces of their own");
   expectIn("lacks \"image\"", place.without(scene, "/maps/land/image"));
   expectIn(
       "lies over the facet \"ground\", which has no texture coordinates; write the mesh with",

@@ -51,6 +51,9 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
         variables["stokes_standard_error"] = (
             (*pixels, "band", "stokes"), found["stokes_standard_error"],
             {"units": found["unit"], "long_name": "standard error of the Stokes radiance", "description": found["description"]})
+    if "temperature_K" in found:
+        variables["temperature_K"] = (pixels, found["temperature_K"],
+                                      {"units": "K", "long_name": "temperature of what the first ray of a pixel meets; NaN: the sky, or cold"})
     height, width = found["rays"].shape[1:]
     coordinates = {
         "frame": ("frame", np.array(found["frames"], dtype=np.int64), {"long_name": "number of the frame, from 0"}),
@@ -110,8 +113,8 @@ def render(scene: dict[str, Any] | str | os.PathLike[str], *, frames: int | Iter
     -------
     xarray.Dataset
         ``radiance`` (frame, y, x, band, stokes), float32 [W m^-2 sr^-1 nm^-1], with the numbers of ``malus render``'s cube, and the
-        truth of each pixel's first ray: ``range_m``, ``facet``, ``material``, ``sun_hidden``, ``rays``. With several batches also
-        ``stokes_standard_error``, of the shape of ``radiance``.
+        truth of each pixel's first ray: ``range_m``, ``facet``, ``material``, ``sun_hidden``, ``rays``, and ``temperature_K`` if
+        the weather heats the scene. With several batches also ``stokes_standard_error``, of the shape of ``radiance``.
 
     Raises
     ------
