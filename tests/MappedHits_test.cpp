@@ -162,7 +162,7 @@ TEST(MappedHitsIdentity, MapsOverMaps) {
   Hit hit;
   const auto meets = [&](const CDVector& at, double choice) {
     hit.material = 3;
-    finishHit(world, at, choice, hit);
+    finishHit(world, {0, 0, 1}, at, choice, hit);
     return hit.material;
   };
   EXPECT_EQ(meets({0.5, 0.5, 0}, 0.1), 2u);

@@ -300,6 +300,42 @@ TEST(MapsInScenesInvariant, SixteenLevelsOfRoughnessAreEnough) {
   EXPECT_GT(error(4), 0.1);
 }
 
+TEST(MapsInScenesIdentity, HeightsAndSmoothMeshes) {
+  const Workplace place;
+  put(place.scratch / "ramp.pgm", "P2 4 1 255\n0 85 170 255\n");
+  json scene = landScene();
+  scene["maps"]["land"] = {{"image", "ramp.pgm"},
+                           {"over_m", {0, 0, 4, 3}},
+                           {"beyond", "edge"},
+                           {"height", {{"material", "rock"}, {"range_m", {0, 0.3}}}}};
+  scene["sun"]["to_sun"] = {-1, 0, 1};
+  const RenderedImage frame = renderScene(place.read(scene));
+  // a rise of 0.1 m in a metre towards the east, lit from the west
+  const double ramp = (0.1 + 1) / std::sqrt(1.01 * 2), flat = std::sqrt(0.5);
+  EXPECT_NEAR(frame.at(1, 1)[0], 0.4 * ramp, 1e-4);
+  EXPECT_GT(ramp, 1.05 * flat) << "the control";
+  EXPECT_NE(place.without(scene, "/maps/land/height/range_m"), "");
+
+  const std::string leaning =
+      "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nvn -0.1 0 1\nf 1//1 2//1 3//1 4//1\n";
+  put(place.scratch / "leaning.obj", leaning);
+  json mesh = landScene();
+  mesh.erase("maps");
+  mesh["sun"] = scene["sun"];
+  mesh["geometry"] = {{{"obj", "leaning.obj"}, {"material", "rock"}}};
+  const Scene flat_one = place.read(mesh);
+  ASSERT_EQ(flat_one.notices.size(), 1u);
+  expectIn("say \"smooth\": true", flat_one.notices[0]);
+  EXPECT_NEAR(renderScene(flat_one).at(1, 1)[0], 0.4 * flat, 1e-4);
+  mesh["geometry"][0]["smooth"] = true;
+  const Scene smooth = place.read(mesh);
+  EXPECT_TRUE(smooth.notices.empty());
+  EXPECT_NEAR(renderScene(smooth).at(1, 1)[0], 0.4 * ramp, 1e-4);
+  mesh["geometry"][0]["obj"] = "squares.obj";
+  expectIn("has no normals of corners (vn); write the mesh with normals",
+           place.complaint(mesh));
+}
+
 TEST(MapsInScenesIdentity, AMeshWithoutTextureCoordinates) {
   const Workplace place;
   json scene = landScene();
