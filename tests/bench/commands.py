@@ -12,6 +12,7 @@ Then the parking lot, to 2 % in each pixel: by --until, and by so many batches o
 takes minutes, so their number is computed from the errors of 520 batches, and their time from that of one.
 """
 import datetime
+import math
 import os
 import pathlib
 import re
@@ -130,7 +131,7 @@ def write(rows: Rows, path: str) -> None:
     """The record: what chapter "Which sampling" of the book prints as its table of whole commands."""
     head = ("# title: Seconds of whole commands with all their files, copper chunky bar and parking lot\n"
             f"# source: tests/bench/commands.py, {os.cpu_count()} cores\n# date: {datetime.date.today().isoformat()}\n")
-    lines = [",".join([work, *("" if number != number else f"{number:.3g}" for number in numbers)]) for work, *numbers in rows]
+    lines = [",".join([work, *("" if math.isnan(number) else f"{number:.3g}" for number in numbers)]) for work, *numbers in rows]
     pathlib.Path(path).write_text(head + "work,clock_s,cpu_s,aim_s\n" + "\n".join(lines) + "\n", encoding="utf-8")
 
 
