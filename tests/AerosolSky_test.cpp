@@ -55,7 +55,8 @@ TEST(AerosolSkyInvariant, TheSkyOfASceneIsTheLightOfTheAir) {
   for (const double zenith : zeniths) cosines.push_back(std::cos(zenith * degree));
   std::vector<SkyLight> exact;
   for (const SkyAir& a : air)
-    exact.emplace_back(a, sun.to_sun.z, 2, cosines, std::vector<double>{a.whole()});
+    exact.emplace_back(a, sun.to_sun.z, 2, cosines, std::vector<double>{a.whole()}, nullptr,
+                       sceneAccuracy());
   for (const double zenith : zeniths)
     for (const double azimuth : {5.0, 30.0, 90.5, 170.0, 260.0}) {
       CDSpectralVector<CDStokesVector> light(grid);
@@ -194,9 +195,10 @@ TEST(AerosolSkyInvariant, TheCameraLooksThroughTheSameAir) {
   for (std::size_t band = 0; band < 2; ++band) EXPECT_LT(apart(air[band], sky[band]), 0.01);
   haze.path_radiance->apply(up * 1500, {0, 0, 0}, air *= 0.0);
   EXPECT_GT(apart(air[0], sky[0]), 0.1) << "negative control";
-  // the same without a wish for it: the sky keeps its bits
+  // the same without a wish for it: other panels of depth, and the remainder that the equation may leave
   made({{"aerosol_scale_height_m", "1500"}}, false).sky->radiance(up, air);
-  for (std::size_t band = 0; band < 2; ++band) EXPECT_LT(apart(air[band], sky[band]), 1e-8);
+  for (std::size_t band = 0; band < 2; ++band)
+    EXPECT_LT(apart(air[band], sky[band]), sceneAccuracy().remainder);
   for (const char* place : {"below", "above"}) {
     try {
       (void)made({{"aerosol_place", place}}, true);

@@ -242,7 +242,7 @@ const std::vector<BadScene> bad_scenes{
     {R"({"materials": {"ground": {"temperature_K": "hot"}}})", "give a temperature in K"},
     {R"({"materials": {"ground": {"model": "beard-maxwell", "reflectance": null, "n": 1.304, "k": 7.479,
          "bias": 0.03, "sigma": 0.17, "temperature_K": 300}}})",
-     "which leaves no emissivity; leave the temperature out"},
+     "which leaves no emissivity; leave it out"},
     {R"({"sky": {"temperature_K": 230}})", "does not say in one way how bright it is"},
     {R"({"sun": {"irradiance_W_m2_nm": 0}, "sky": {"radiance_W_m2_sr_nm": 0}})",
      "has no light"},

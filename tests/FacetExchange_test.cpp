@@ -104,3 +104,30 @@ TEST(FacetExchangeIdentity, ARoofShadesHalf) {
   const RayTracer bare(worldOf({low}).geometry);
   EXPECT_EQ(FacetExchange(bare).sunlit(0, {0, 0, 1}), 1);
 }
+
+// Two unit squares face each other at the distance of their side: each an instance, one of half its size and one turned over.
+TEST(FacetExchangePublished, TwoSquaresOfSharedMeshes) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  mesh.facets = {"square"}, mesh.materials = {"any"};
+  mesh.triangles = {{0, 1, 2, 0, 0}, {0, 2, 3, 0, 0}};
+  GeometryBuilder builder;
+  const std::uint32_t number = builder.share(mesh);
+  const Transform half = Transform::scale(0.5);
+  const Transform over = Transform::rotate({1, 0, 0}, std::numbers::pi).after(half);
+  builder.addInstance(number, half, "low.");
+  builder.addInstance(number, Transform::translate({0, 1, 1}).after(over), "high.");
+  // another pair far away, with the same names: the same two parts
+  const Transform away = Transform::translate({20, 0, 0});
+  builder.addInstance(number, away.after(half), "low.");
+  builder.addInstance(number, away.after(Transform::translate({0, 1, 1}).after(over)), "high.");
+  const RayTracer tracer(std::move(builder).build());
+  const FacetExchange exchange(tracer);
+  ASSERT_EQ(exchange.parts().size(), 2U);
+  EXPECT_NEAR(exchange.parts()[0].area_m2, 2, 1e-12);
+  EXPECT_NEAR(share(exchange, 0, 1), 0.19982, even);
+  EXPECT_NEAR(share(exchange, 1, 0), 0.19982, even);
+  EXPECT_NEAR(exchange.sky(0), 1 - 0.19982, even);
+  EXPECT_EQ(exchange.sunlit(0, {0, 0, 1}), 0) << "the other square is above it";
+  EXPECT_NEAR(exchange.sunlit(1, {0, 0, 1}), 0, 1e-12);
+}

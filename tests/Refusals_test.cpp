@@ -174,6 +174,25 @@ TEST(RefusalsIdentity, AModelsOwnComplaintNamesTheMaterialOfTheScene) {
                 "materials.paint: dirsig: ");
 }
 
+TEST(RefusalsIdentity, AnOpenBodyOfGlassIsRefusedAtItsMaterial) {
+  json scene = soundScene();
+  scene["materials"]["glass"] = {{"model", "dielectric"}, {"n", 1.5}};
+  scene["geometry"][0]["material"] = "glass";
+  expectRefusal(
+      Workplace(scene), "render s.json --out a",
+      "materials.glass: bounds no closed body: 3 of its edges do not belong to two facets "
+      "with fronts on one side, one of them at (0, 0, 1) m; close the mesh, or use the model "
+      "pane for a sheet");
+  scene["materials"]["glass"]["temperature_K"] = 300;
+  scene["materials"]["glass"]["model"] = "pane";
+  expectRefusal(Workplace(scene), "render s.json --out a",
+                "belongs to a material that lets light through");
+  scene["materials"]["glass"].erase("temperature_K");
+  scene["radiometry"] = {{"sampling", "two-and-a-half"}, {"rays", {9, 1}}};
+  expectRefusal(Workplace(scene), "render s.json --out a",
+                "sees nothing through the material glass");
+}
+
 TEST(RefusalsIdentity, AMistakeInAFileNamesTheFileAndTheSceneThatNamesIt) {
   const Workplace place(
       with("/materials/paint/reflectance", json::parse(R"({"file": "r.csv", "column": "r"})")));

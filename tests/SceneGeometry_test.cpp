@@ -330,3 +330,53 @@ TEST(SceneGeometryIdentity, AConvexPolygonIsCutFromItsFirstCorner) {
   // corners on one line with the first make triangles without area, which do not disagree
   EXPECT_EQ(parsed("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3 4\n").triangles[0].a, 0u);
 }
+
+// The same arithmetic: to rounding of coordinates up to 400 m.
+TEST(SceneGeometryIdentity, SharedMeshesAreWhatWouldBeWrittenOut) {
+  const Mesh mesh = parsed(square);
+  GeometryBuilder flat, shared;
+  const std::uint32_t number = shared.share(mesh);
+  for (int i = 0; i < 40; ++i) {
+    Transform place = Transform::scale(0.3 + 0.1 * i);
+    if (i % 3 == 0) place.y = -place.y;  // a mirror image
+    place = Transform::rotate({1, 0.1 * i, -0.5}, 0.7 * i).after(place);
+    place = Transform::translate({1.7 * i, -300.1, 0.01 * i}).after(place);
+    const std::map<std::string, std::string> names{{"red", i % 2 ? "green" : "red"}};
+    flat.addMesh(mesh, place, i % 5 ? "" : "fifth.", names);
+    shared.addInstance(number, place, i % 5 ? "" : "fifth.", names);
+  }
+  const SceneGeometry a = std::move(flat).build(), b = std::move(shared).build();
+  ASSERT_EQ(b.instances().size(), 40u);
+  EXPECT_EQ(b.instanceNames().size(), 4u) << "places with the same names share them";
+  EXPECT_EQ(b.triangles().size(), 0u);
+  ASSERT_EQ(b.countTriangles(), a.triangles().size());
+  EXPECT_EQ(a.facetNames(), b.facetNames());
+  EXPECT_EQ(a.materialNames(), b.materialNames());
+  for (std::uint32_t t = 0; t < a.triangles().size(); ++t) {
+    const PlacedTriangle one = a.placed(t), other = b.placed(t % 3, t / 3);
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LT((one.corners[k] - other.corners[k]).getLength(), 1e-12);
+    EXPECT_EQ(one.facet, other.facet);
+    EXPECT_EQ(one.material, other.material);
+    EXPECT_GT(dot(a.normal(a.triangles()[t]), other.normal()), 1 - 1e-9);
+    const auto [low, high] = b.boxAround(b.instances()[t / 3]);
+    for (const CDVector& corner : other.corners) {
+      EXPECT_TRUE(corner.x >= low.x - 1e-12 && corner.x <= high.x + 1e-12);
+      EXPECT_TRUE(corner.z >= low.z - 1e-12 && corner.z <= high.z + 1e-12);
+    }
+  }
+  EXPECT_NE(b.placed(0, 3).corners, b.placed(0, 4).corners);  // negative control
+}
+
+TEST(SceneGeometryIdentity, SharedMeshesStayInTheWorldAndKeepTheirVolume) {
+  const Mesh mesh = parsed(square + "f 1 1 2\n");
+  GeometryBuilder builder;
+  const std::uint32_t number = builder.share(mesh);
+  EXPECT_THROW(builder.addInstance(number, Transform::scale(0)), MathError);
+  EXPECT_THROW(builder.addInstance(number, Transform::translate({2e9, 0, 0})), InputError);
+  builder.addInstance(number, Transform::translate({1e8, 0, 0}));
+  const SceneGeometry made = std::move(builder).build();
+  EXPECT_EQ(made.instances().size(), 1u);
+  EXPECT_EQ(made.countTriangles(), 3u);
+  EXPECT_EQ(made.degenerateTriangles(), 1u);
+}

@@ -123,7 +123,7 @@ struct Listing : Scratch {
     put(*this / "special.txt", special);
     std::string text = header + "zenith_deg," + azimuth + ",printout\n";
     for (const int zenith : {0, 80, 90})
-      for (const int a : {0, 30, 120, 240})
+      for (const int a : {0, 30, 120, 210, 300})
         text += fmt::format("{},{},{}\n", zenith, a,
                             zenith == 80 && a == 30 ? "special.txt" : "common.txt");
     put(*this / "sky.csv", text);
@@ -305,9 +305,10 @@ TEST(SkyPrintoutsByHand, RunsOfATape7) {
   brighter.replace(brighter.find(row(20000, 1e-6)), row(0, 0).size(), row(20000, 4e-6));
   put(scratch / "tape7", modtran5 + brighter);
   const auto write = [&](const std::string& run) {
-    put(scratch / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout" +
-                                 std::string(run.empty() ? "" : ",run") + "\n0,0,tape7" +
-                                 (run.empty() ? "" : ",1") + "\n90,0,tape7" + run + "\n");
+    put(scratch / "sky.csv",
+        "# convention: malus\n# azimuths: one\nzenith_deg,azimuth_deg,printout" +
+            std::string(run.empty() ? "" : ",run") + "\n0,0,tape7" + (run.empty() ? "" : ",1") +
+            "\n90,0,tape7" + run + "\n");
   };
   write(",2");
   EXPECT_NEAR(ask(*skyOf(scratch / "sky.csv"), 90, 0).getScalar(), 1.6, 1e-12);
@@ -315,11 +316,31 @@ TEST(SkyPrintoutsByHand, RunsOfATape7) {
               1e-7);  // 1e-6 deg beside
   const auto refused = [&] { return complaint([&] { skyOf(scratch / "sky.csv"); }); };
   write(",3");
-  has(refused(), "tape7: run = 3: the file holds 2 runs; say which one in a column run");
+  has(refused(),
+      "sky.csv:5: run = 3: is no run of tape7, which holds 2; say which one in a column run");
   write(",1.5");
-  has(refused(), "sky.csv:4: run = 1.5: is no number of a run");
+  has(refused(), "sky.csv:5: run = 1.5: is no run of tape7");
   write("");
-  has(refused(), "the file holds 2 runs");
+  has(refused(), "sky.csv:4: printout = tape7: is no run of tape7, which holds 2");
+}
+
+// Half a circle of MYSTIC's: the other half has the opposite U. One azimuth alone must be declared.
+TEST(SkyPrintoutsInvariant, HalfACircleOfPrintouts) {
+  const Scratch scratch;
+  const std::string header =
+      "# unit: W m^-2 sr^-1 nm^-1\n# convention: malus\nzenith_deg,azimuth_deg,printout\n";
+  std::string text = header;
+  for (const int zenith : {0, 90})
+    for (const int azimuth : {20, 110, 200})
+      text += fmt::format("{},{},mc.rad.spc\n", zenith, azimuth);
+  put(scratch / "mc.rad.spc", "500 0 0 0 1.0\n500 0 0 0 0.2\n500 0 0 0 0.3\n500 0 0 0 0.1\n");
+  put(scratch / "sky.csv", text);
+  const auto sky = skyOf(scratch / "sky.csv");
+  EXPECT_LT(apart(ask(*sky, 90, 110), {1, -0.2, 0.3, 0.1}), 1e-12);
+  EXPECT_LT(apart(ask(*sky, 90, 290), {1, -0.2, -0.3, -0.1}), 1e-12);
+  put(scratch / "sky.csv", header + "0,0,mc.rad.spc\n90,0,mc.rad.spc\n");
+  has(complaint([&] { skyOf(scratch / "sky.csv"); }),
+      "sky.csv: azimuths = 0: leave out 360 deg of the circle");
 }
 
 TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
@@ -349,7 +370,7 @@ TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
   has(complaint([&] { skyOf(uvspec(p)); }), ":3: wavelength = 450 nm: has 2 Stokes components");
   p = {};
   p.last_phi = 90;
-  has(complaint([&] { skyOf(uvspec(p)); }), "leaves out 270 deg of the circle");
+  has(complaint([&] { skyOf(uvspec(p)); }), "leave out 270 deg of the circle");
 }
 
 TEST(SkyPrintoutsRefusal, UvspecWithoutASky) {
@@ -402,18 +423,18 @@ TEST(SkyPrintoutsRefusal, Listings) {
   has(swapped("21000.00", "19500.00"), "special.txt:7: FREQ = 19500.00: is out of order");
   has(swapped("21000.00", "20000.00"), "special.txt:7: FREQ = 20000.00: is out of order");
   has(swapped("21000.00", "22000.00"),
-      "sky.csv:8: printout = special.txt: has other wavelengths or components than common.txt");
+      "sky.csv:9: printout = special.txt: has other wavelengths or components than common.txt");
   has(swapped(modtran5.substr(modtran5.find("19000.00")), " -9999.\n"),
-      "special.txt:4: is followed by no numbers");
+      "special.txt: run 1: has no numbers");
   const Listing empty(modtran5, modtran5);
   put(empty / "sky.csv", "# convention: malus\nzenith_deg,azimuth_deg,printout\n");
   has(empty.refused(), "sky.csv: printout: names no printout; give a row");
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
-  has(gone.refused(), "sky.csv:8: printout = special.txt: is not there; name a file");
+  has(gone.refused(), "sky.csv:9: printout = special.txt: is not there; name a file");
   const Listing twice(modtran5, modtran5);
   put(twice / "sky.csv", contents(twice / "sky.csv") + "80,30,common.txt\n");
-  has(twice.refused(), "sky.csv:15: zenith_deg = 80: repeats the direction");
+  has(twice.refused(), "sky.csv:18: zenith_deg = 80: repeats the direction");
 }
 
 TEST(SkyPrintoutsRefusal, Mystic) {
@@ -467,8 +488,8 @@ TEST(SkyPrintoutsInvariant, BrokenTextsAreReadOrRefused) {
 TEST(SkyPrintoutsInvariant, FilesOfATable) {
   const Listing listing(modtran5, modtran5);
   const auto files = skyPrintoutsOf(listing / "sky.csv");
-  ASSERT_EQ(files.size(), 12u);
-  EXPECT_EQ(files[5], listing / "special.txt");
+  ASSERT_EQ(files.size(), 15u);
+  EXPECT_EQ(files[6], listing / "special.txt");
   EXPECT_TRUE(skyPrintoutsOf(listing / "special.txt").empty());
 }
 

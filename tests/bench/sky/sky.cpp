@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "malus/air/AddingDoubling.hpp"
+#include "malus/air/AerosolSky.hpp"
 #include "malus/air/LayeredLight.hpp"
+#include "malus/air/RayleighAir.hpp"
 #include "malus/air/RayleighSky.hpp"
 
 using namespace malus;
@@ -213,5 +217,29 @@ static void doublingDome(benchmark::State& state) {
                                             0.6, 0.25, pi, cosines));
 }
 BENCHMARK(doublingDome)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// A band of a hazy scene as the renderer gets it: its dome, and path radiance and transmission before the camera; several bands
+// share what does not depend on the wavelength. The counter is the time of one band, its aim one second.
+static void hazyScene(benchmark::State& state) {
+  const auto bands = static_cast<std::size_t>(state.range(0));
+  std::vector<double> nm;
+  for (std::size_t b = 0; b < bands; ++b)
+    nm.push_back(400 + 600.0 * static_cast<double>(b) / static_cast<double>(bands));
+  const auto grid = SpectralGrid::make(nm);
+  const Sun sun{compassDirection(0.9, 2), CDSpectralVector<CDStokesVector>(grid, 1.0)};
+  const auto aerosol =
+      std::make_shared<const Aerosol>(Aerosol{henyeyGreensteinScatterer(0.7), 1, ""});
+  std::vector<SkyAir> air;
+  for (std::size_t b = 0; b < bands; ++b) {
+    SkyAir one{rayleighOpticalDepth(nm[b]), rayleighDepolarization(nm[b]), 0.2};
+    one.aerosol_depth = 0.3 * 550 / nm[b], one.aerosol = aerosol, one.aerosol_scale_m = 1500;
+    air.push_back(std::move(one));
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(aerosolSky(sun, air, true));
+  state.counters["band"] = benchmark::Counter(
+      static_cast<double>(bands),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(hazyScene)->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 BENCHMARK_MAIN();
