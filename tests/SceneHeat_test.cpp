@@ -68,6 +68,7 @@ struct Folder : Scratch {
         "v 0 -1 1\nv 1 -1 0.2\nv 1 1 0.2\nv 0 1 1\nv -1 -1 0.2\nv -1 1 0.2\n"
         "g east\nf 1 2 3 4\ng west\nf 5 1 4 6\n");
     put(path / "june.csv", weatherFrom());
+    put(path / "land.pgm", "P2 2 1 255\n 0 1\n");
   }
   Scene read(const json& scene) const { return readSceneText(scene.dump(), "s.json", path); }
   std::string complaint(const json& patch) const {
@@ -211,6 +212,22 @@ TEST(SceneHeatRefusal, SaysWhatIsWrongAndWhatToDo) {
                           {"time", "2001-06-09T14:00:00Z"},
                           {"irradiance_W_m2_nm", 0}}}}),
       "heat.latitude_deg = 43: is that of the sun already; leave it out here");
+  // a map gives places and not facets their materials
+  const auto mapped = [](const char* second) {
+    return json{{"geometry",
+                 {{{"obj", "tilted.obj"}, {"material", "paint"}},
+                  {{"ground", {{"material", "land"}}}}}},
+                {"maps",
+                 {{"land",
+                   {{"image", "land.pgm"},
+                    {"over_m", {0, 0, 2, 1}},
+                    {"materials", {{"0", "cold"}, {"1", second}}}}}}}};
+  };
+  EXPECT_EQ(folder.complaint(mapped("cold")), "accepted");
+  has(folder.complaint(mapped("paint")),
+      "is of a material that the map \"land\" selects, and the weather heats whole facets; "
+      "give "
+      "the material a temperature_K instead");
   // a gap in the file, which is named with the line that follows it
   put(folder.path / "june.csv", weatherFrom("2001-06-04", 30));
   has(folder.complaint(json::object()),

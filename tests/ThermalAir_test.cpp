@@ -199,7 +199,7 @@ TEST(ThermalAirIdentity, InAScene) {
   ASSERT_TRUE(made.world.atmosphere);
   scene["sky"]["atmosphere"] = "us-standard";
   EXPECT_NE(complaint().find("does not say in one way how warm the air is; give temperature_K, "
-                             "atmosphere or profile"),
+                             "or an atmosphere"),
             std::string::npos)
       << complaint();
   scene["sky"].erase("temperature_K");
