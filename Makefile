@@ -12,7 +12,7 @@ CONFIGURE = $(GENERATOR) $(if $(CI),-DMALUS_WERROR=ON)
 # The scripts name /usr/bin/python3, for which Debian's modules are installed: another Python may come first in PATH.
 PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
-           libembree-dev libopenexr-dev libpng-dev zlib1g-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev libnetcdf-dev libopenimageio-dev \
+           libembree-dev libopenexr-dev libpng-dev zlib1g-dev libtbb-dev libtinyobjloader-dev libyaml-cpp-dev libvalijson-dev libnova-dev libnetcdf-dev libopenimageio-dev libassimp-dev libgdal-dev \
            python3-dev pybind11-dev python3-numpy python3-xarray python3-matplotlib
 BOOK    := latexml universal-ctags python3-lxml python3-pybtex fonts-texgyre fonts-texgyre-math
 # other people's readers of our cubes, judges of HTML and manual pages, and shells, for the tests alone

@@ -83,7 +83,7 @@ def content(root: pathlib.Path) -> dict[str, pathlib.Path]:
     library = next(path for path in root.rglob("libmalus.so.0") if "glibc-hwcaps" not in path.parts).parent
     share = root.joinpath(*library.relative_to(root).parts[:-1], "share", "malus")
     files = {f"malus/{path.name}": path for path in module.parent.iterdir() if path.is_file()}
-    plugins = ("libmalus_netcdf.so", "libmalus_images.so")
+    plugins = ("libmalus_netcdf.so", "libmalus_images.so", "libmalus_meshes.so", "libmalus_terrain.so")
     ours = [path for name in ("libmalus.so.0", "libmalus_scenes.so.0", *plugins) for path in library.rglob(name)]
     files.update({f"malus/lib/{path.relative_to(library)}": path for path in ours})
     # what writes netCDF stands on HDF5 and its compressors, what reads images on OpenImageIO; each is loaded only where these are there

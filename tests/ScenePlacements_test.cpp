@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -163,4 +164,88 @@ TEST(ScenePlacementsInvariant, ACameraInASharedSolidIsRefused) {
   scene["platform"]["position_m"] = {2.1, -1.8, 1.3};  // above it
   scene["geometry"][0]["shared"] = true;
   EXPECT_EQ(complaint(scene, "."), "none");
+}
+
+namespace {
+const std::string bus_path =
+    "time_s,x_m,y_m,z_m,heading_deg\n0,0,0,0,90\n2,20,0,0,90\n3,24,4,0,0\n";
+
+/// A bar with a path, shared or not, and pictures of three times from above.
+json moving(const std::string& file, bool shared) {
+  json scene = meadow(json::array({json::object()}), shared);
+  scene["geometry"][0].erase("translate_m");
+  scene["geometry"][0]["instances"][0]["path"] = file;
+  const auto pose = [](double time_s) {
+    return json{{"position_m", {22, 2, 40}},
+                {"look_at_m", {22, 2, 0}},
+                {"up", {0, 1, 0}},
+                {"time_s", time_s}};
+  };
+  scene["platform"] = {{"poses", {pose(0), pose(2.5), pose(3)}}};
+  scene["sensor"]["field_of_view_deg"] = 20;
+  return scene;
+}
+}  // namespace
+
+// By hand: 10 m in the first second; at 2.5 s half of the way from (20, 0) to (24, 4), and half of the turn from east to north.
+TEST(ScenePlacementsIdentity, AThingFollowsItsPath) {
+  const Scratch scratch;
+  put(scratch / "bus.csv", bus_path);
+  const SceneText text(R"({"path": "bus.csv"})", "t.json", scratch.path);
+  const auto nose = [&](double time_s) {
+    const Transform map = readMotion(text.root(), time_s);
+    return std::pair{map.origin, map.apply({0, 1, 0}) - map.origin};
+  };
+  EXPECT_NEAR((nose(1).first - CDVector{10, 0, 0}).getLength(), 0, 1e-12);
+  EXPECT_NEAR((nose(1).second - CDVector{1, 0, 0}).getLength(), 0, 1e-12);
+  EXPECT_NEAR((nose(2.5).first - CDVector{22, 2, 0}).getLength(), 0, 1e-12);
+  EXPECT_NEAR((nose(2.5).second - CDVector{M_SQRT1_2, M_SQRT1_2, 0}).getLength(), 0, 1e-12);
+  EXPECT_NEAR((nose(3).second - CDVector{0, 1, 0}).getLength(), 0, 1e-12);
+  put(scratch / "bus.csv", "time_s,x_m,y_m,z_m\n0,0,0,0\n2,-20,0,0\n");
+  EXPECT_NEAR((nose(1).second - CDVector{-1, 0, 0}).getLength(), 0, 1e-12) << "along its way";
+  EXPECT_THROW(nose(2.1), InputError);
+}
+
+TEST(ScenePlacementsIdentity, PicturesShowThingsWhereTheirPathsLead) {
+  const Scratch scratch;
+  put(scratch / "bus.csv", bus_path);
+  for (const bool shared : {true, false}) {
+    const Scene scene = sceneOf(moving("bus.csv", shared), scratch.path);
+    std::array<int, 3> seen{};
+    for (std::size_t frame = 0; frame < 3; ++frame)
+      for (const Radiometry::Truth& truth : renderScene(scene, frame).truth)
+        seen[frame] += truth.facet != Hit::nothing &&
+                       scene.world.geometry.facetNames()[truth.facet] != "ground";
+    EXPECT_EQ(seen[0], 0) << "it is 22 m away";
+    EXPECT_GT(seen[1], 100);
+    EXPECT_GT(seen[2], 100);
+  }
+}
+
+TEST(ScenePlacementsIdentity, PathsThatEndTooEarlyAreRefused) {
+  const Scratch scratch;
+  const auto said = [&](const std::string& table) {
+    put(scratch / "bus.csv", table);
+    return complaint(moving("bus.csv", true), scratch.path);
+  };
+  const auto says = [&](const std::string& table, const std::string& part) {
+    const std::string all = said(table);
+    EXPECT_NE(all.find(part), std::string::npos) << all;
+  };
+  EXPECT_EQ(said(bus_path), "none");
+  says(bus_path.substr(0, bus_path.find("3,24")),
+       "is known from 0 s to 2 s, and a picture is taken at 3 s");
+  says("time_s,x_m,y_m,z_m\n0,0,0,0\n0,1,0,0\n", "is not after the time above it");
+  says("time_s,x_m,y_m,z_m\n0,0,0,0\n", "is no path");
+  says("time_s,x_m,y_m\n0,0,0\n5,0,0\n", "z_m");
+  json scanner = moving("bus.csv", true);
+  put(scratch / "bus.csv", bus_path);
+  scanner["sensor"]["kind"] = "pushbroom", scanner["sensor"]["row_time_s"] = 0.01;
+  scanner["platform"] = {{"path", "straight"},
+                         {"start_m", {0, -20, 40}},
+                         {"velocity_m_s", {0, 10, 0}},
+                         {"look", {0, 0, -1}},
+                         {"up", {0, 1, 0}}};
+  EXPECT_NE(complaint(scanner, scratch.path).find("things move"), std::string::npos)
+      << complaint(scanner, scratch.path);
 }
