@@ -154,7 +154,7 @@ TEST(PanesIdentity, RefractionObeysSnellAndIsUndone) {
       const CDVector direction = -CDVector::fromAngles(0.3 + 0.02 * i, 1.1 + 0.3 * i);
       const double cosine = -dot(direction, normal);
       if (cosine <= 0) continue;
-      const double sine = std::sqrt(1 - cosine * cosine);
+      const double sine = cross(direction, normal).getLength();
       const auto beyond = refractedDirection(direction, normal, n);
       ASSERT_EQ(beyond.has_value(), sine < n);
       if (!beyond) continue;

@@ -186,7 +186,7 @@ TEST(RefusalsIdentity, AnOpenBodyOfGlassIsRefusedAtItsMaterial) {
   scene["geometry"][0]["material"] = "glass";
   expectRefusal(
       Workplace(scene), "render s.json --out a",
-      "materials.glass: bounds no closed body: 3 of its edges do not belong to two facets "
+      "bounds no closed body: 3 of its edges do not belong to two facets "
       "with fronts on one side, one of them at (0, 0, 1) m; close the mesh, or use the model "
       "pane for a sheet");
   scene["materials"]["glass"]["temperature_K"] = 300;
@@ -386,8 +386,9 @@ TEST(RefusalsIdentity, EveryNumberOfTheSchemaHasAnInterval) {
         const bool number =
             type == "number" || type == "integer" ||
             (type.is_array() && std::find(type.begin(), type.end(), "number") != type.end());
-        // spectra of materials and filters have the interval of their parameter (Models, ScenePolarimeter)
+        // spectra and mapped ranges have the interval of their parameter (Models, ScenePolarimeter, SceneMaps)
         if (number && path.find("/definitions/spectrum") != 0 &&
+            path.find("/parameter/properties/range/") == path.npos &&
             path.find("/materials/") == path.npos) {
           ++numbers;
           EXPECT_TRUE(schema.contains("minimum") || schema.contains("exclusiveMinimum"))

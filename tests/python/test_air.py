@@ -140,7 +140,7 @@ def test_spheres_are_the_programs(words: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"n": 1.5}, "malus.mie: radius_um: is missing; give x, radius_um, effective_radius_um or median_radius_um"),
+    ({"n": 1.5}, "malus.mie: radius_um: is missing; give x, radius_um, effective_radius_um, median_radius_um or sizes"),
     ({"n": 1.5, "x": 1, "radius_um": 1}, "malus.mie: radius_um = 1: stands beside x; say in one way how large they are"),
     ({"n": 1.5, "radius_um": 1}, "malus.mie: wavelength_nm: is missing; give it beside radius_um"),
     ({"n": 1.5, "x": 1, "deviation": 2}, "malus.mie: deviation = 2: has no meaning beside x; leave it out"),
