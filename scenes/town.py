@@ -60,7 +60,8 @@ def house(_: random.Random) -> Any:
         mesh.face(*corners[::order])
     mesh.facet('roof', 'tiles')
     for side in (-1, 1):
-        a = [(side * (w + 0.5), -d - 0.4, h - 0.3), (side * (w + 0.5), d + 0.4, h - 0.3), (0, d + 0.4, ridge + 0.05), (0, -d - 0.4, ridge + 0.05)]
+        a = [(side * (w + 0.5), -d - 0.4, h - 0.3), (side * (w + 0.5), d + 0.4, h - 0.3),
+             (0, d + 0.4, ridge + 0.05), (0, -d - 0.4, ridge + 0.05)]
         mesh.quad(*(a if side > 0 else a[::-1]))
     mesh.facet('windows', 'glass')
     for z in (0.9, 3.6):
@@ -178,7 +179,8 @@ def materials() -> dict[str, Any]:
     varnish = ([1.5, 1.5, 1.49, 1.5], [0, 0, 0, 0.1])
     aluminium = ([0.6, 0.96, 1.5, 25], [5.4, 6.7, 7.8, 90])
     return {
-        'asphalt': matt([0.08, 0.09, 0.1, 0.04], 297), 'plaster': matt([0.5, 0.6, 0.65, 0.06], 292), 'tiles': matt([0.08, 0.12, 0.35, 0.06], 291),
+        'asphalt': matt([0.08, 0.09, 0.1, 0.04], 297), 'plaster': matt([0.5, 0.6, 0.65, 0.06], 292),
+        'tiles': matt([0.08, 0.12, 0.35, 0.06], 291),
         'concrete': matt([0.25, 0.3, 0.33, 0.06], 293), 'grass': matt([0.04, 0.1, 0.05, 0.02], 287), 'soil': matt([0.1, 0.15, 0.2, 0.05], 290),
         'foliage': matt([0.04, 0.11, 0.05, 0.03], 289), 'bark': matt([0.08, 0.1, 0.12, 0.05], 290), 'tyre': matt([0.04, 0.04, 0.04, 0.05], 294),
         'red-paint': matt([0.04, 0.05, 0.5, 0.08], 292),
@@ -189,7 +191,8 @@ def materials() -> dict[str, Any]:
 def scene(town: Town, title: str) -> dict[str, Any]:
     geometry: list[dict[str, Any]] = [{'ground': {'z_m': 0, 'material': 'asphalt', 'facet': 'streets'}}]
     for kind in sorted(town.rows):
-        entry: dict[str, Any] = {'obj': mesh_of(kind) + '.obj', 'facet_prefix': kind + '.', 'shared': True, 'instances': {'file': kind + '.csv'}}
+        entry: dict[str, Any] = {'obj': mesh_of(kind) + '.obj', 'facet_prefix': kind + '.', 'shared': True,
+                                 'instances': {'file': kind + '.csv'}}
         if mesh_of(kind) == 'car':
             entry['materials'] = {'body': kind[len('car-'):]}
         geometry.append(entry)

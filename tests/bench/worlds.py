@@ -35,7 +35,8 @@ def run(malus: str, path: pathlib.Path, *flags: str) -> tuple[float, float]:
     """CPU seconds, and the largest memory in bytes."""
     out = path.parent / "out"
     subprocess.run(["rm", "-rf", str(out)], check=True)
-    with subprocess.Popen([malus, "render", str(path), "--out", str(out), *flags], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+    command = [malus, "render", str(path), "--out", str(out), *flags]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
@@ -62,8 +63,9 @@ def main() -> None:
         for (kind, _, _), path, (begin, whole, memory) in zip(WORLDS, paths, best):
             info = json.loads(subprocess.run([malus, "info", "--json", str(path)], check=True, capture_output=True, text=True).stdout)
             rays = followed(path)
-            rows.append((kind, info["triangles"], info["instances"], f"{begin:.2f}", f"{memory:.0f}", rays, f"{1e9 * (whole - begin) / rays:.1f}"))
-            print(f"{kind:12} {info['triangles']:>12} triangles, {memory / 2**20:8.0f} MiB, {begin:6.2f} s to begin, {1e9 * (whole - begin) / rays:8.1f} ns a ray")
+            each = 1e9 * (whole - begin) / rays
+            rows.append((kind, info["triangles"], info["instances"], f"{begin:.2f}", f"{memory:.0f}", rays, f"{each:.1f}"))
+            print(f"{kind:12} {info['triangles']:>12} triangles, {memory / 2**20:8.0f} MiB, {begin:6.2f} s to begin, {each:8.1f} ns a ray")
     if len(sys.argv) > 2:
         header = ("# title: What a picture of 240 x 160 pixels of a town uses: shared meshes, written out, and a billion triangles\n"
                   f"# source: tests/bench/worlds.py, CPU seconds and memory of malus render, least of {TURNS} runs each\n"
