@@ -51,8 +51,9 @@ COMPILED = {name: re.compile(pattern) for name, _, pattern in PATTERNS}
 
 # a chapter's title should have one of these stems
 TERMS = re.compile(
-    r"aerosol|air\b|albedo|angle|atmospher|band|BRDF|BSDF|calibrat|camera|cloud|command|convention|cube|diffuse|direction|distortion|errata|error"
-    r"|figure|file|format|Fresnel|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
+    r"aerosol|air\b|albedo|angle|atmospher|band|BRDF|BSDF|calibrat|camera|cloud|command|convention|cube|diffuse|direction|distortion|errata"
+    r"|error|figure|file|format"
+    r"|Fresnel|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
     r"|light|MPI|material|matri|mesh|metal|microfacet|Mie|model|Mueller|netcdf|noise|OpenEXR|optical|parallel|parameter|particle|path|pixel"
     r"|point|polari|program|Python|quadrature|radian|radiat|radiometr|random|Rayleigh|ray\b|rays\b|reflect|refract|registr|render|sampl|scatter"
     r"|scene|schema|section|sensor|sequence|sky|skies|slope|solar|spectr|spline|Stokes|sun\b|surface|table|temperature|terrain|test|thermal"
