@@ -29,7 +29,7 @@ PATTERNS = [
     ("answer", "return, result", rf"{PERSONAL}\banswer(?:s|ed)?\b"),
     ("know", "has, stores", rf"{PERSONAL}\bknows?\b"),
     ("want", "needs, takes", rf"{PERSONAL}\bwant(?:s|ed)?\b"),
-    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares?|believes?|trusts?|promises?|wishes|hopes|obeys?"
+    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares|believes?|trusts?|promises?|wishes|hopes|obeys?"
      r"|likes to|tries to|has (?:a|no) say)\b"),
     ("for", "because", r", for (?:it|they|there|we|he|she|this|that|these|then|nothing|none|nobody)\b"
      rf"|, for (?:the|an?|its|their|no|all|both|every|each) (?:[\w-]+ ){{1,4}}{FINITE}\b"),
