@@ -29,7 +29,7 @@ PATTERNS = [
     ("answer", "return, result", rf"{PERSONAL}\banswer(?:s|ed)?\b"),
     ("know", "has, stores", rf"{PERSONAL}\bknows?\b"),
     ("want", "needs, takes", rf"{PERSONAL}\bwant(?:s|ed)?\b"),
-    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares|believes?|trusts?|promises?|wishes|hopes|obeys?"
+    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares|believes?|trusts?|wishes|hopes|obeys?"
      r"|likes to|tries to|has (?:a|no) say)\b"),
     ("for", "because", r", for (?:it|they|there|we|he|she|this|that|these|then|nothing|none|nobody)\b"
      rf"|, for (?:the|an?|its|their|no|all|both|every|each) (?:[\w-]+ ){{1,4}}{FINITE}\b"),
@@ -53,7 +53,7 @@ COMPILED = {name: re.compile(pattern) for name, _, pattern in PATTERNS}
 TERMS = re.compile(
     r"aerosol|air\b|albedo|angle|atmospher|band|BRDF|BSDF|calibrat|camera|cloud|command|convention|cube|diffuse|direction|distortion|errata"
     r"|error|figure|file|format"
-    r"|Fresnel|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
+    r"|Fresnel|film|paint|boundar|index|dielectric|scanner|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
     r"|light|MPI|material|matri|mesh|metal|microfacet|Mie|model|Mueller|netcdf|noise|OpenEXR|optical|parallel|parameter|particle|path|pixel"
     r"|point|polari|program|Python|quadrature|radian|radiat|radiometr|random|Rayleigh|ray\b|rays\b|reflect|refract|registr|render|sampl|scatter"
     r"|scene|schema|section|sensor|sequence|sky|skies|slope|solar|spectr|spline|Stokes|sun\b|surface|table|temperature|terrain|test|thermal"
