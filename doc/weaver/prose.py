@@ -53,7 +53,8 @@ COMPILED = {name: re.compile(pattern) for name, _, pattern in PATTERNS}
 TERMS = re.compile(
     r"aerosol|air\b|albedo|angle|atmospher|band|BRDF|BSDF|calibrat|camera|cloud|command|convention|cube|diffuse|direction|distortion|errata"
     r"|error|figure|file|format"
-    r"|Fresnel|film|paint|boundar|index|dielectric|scanner|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
+    r"|Fresnel|film|paint|boundar|index|dielectric|gas|geometr|geotiff|grammar|hemispher"
+    r"|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
     r"|light|MPI|material|matri|mesh|metal|microfacet|Mie|model|Mueller|netcdf|noise|OpenEXR|optical|parallel|parameter|particle|path|pixel"
     r"|point|polari|program|Python|quadrature|radian|radiat|radiometr|random|Rayleigh|ray\b|rays\b|reflect|refract|registr|render|sampl|scatter"
     r"|scene|schema|section|sensor|sequence|sky|skies|slope|solar|spectr|spline|Stokes|sun\b|surface|table|temperature|terrain|test|thermal"
