@@ -64,7 +64,7 @@ Place = tuple[str, int, str]  # kind (prose, message, comment), line, sentence
 
 COMMANDS = re.compile(r"\\(?:label|ref|eqref|cite|val|includegraphics|tag|input)(?:\[[^]]*\])?\{[^}]*\}"
                       r"|\\(?:begin|end)\{[^}]*\}(?:\[[^]]*\])?")
-ENDS = re.compile(r"(?<=[.?!])(?<!e\.g\.)(?<!i\.e\.)(?<!eq\.)(?<!sec\.)(?<!fig\.)(?<!p\.)[)'\"]*\s+(?=[A-Z\\$(`\[])")
+ENDS = re.compile(r"(?<=[.?!])(?<!e\.g\.)(?<!i\.e\.)(?<!\beq\.)(?<!\bsec\.)(?<!\bfig\.)(?<!\bp\.)[)'\"]*\s+(?=[A-Z\\$(`\[])")
 
 
 def sentences(kind: str, lines: list[tuple[int, str]]) -> Iterator[Place]:
@@ -94,12 +94,17 @@ SKIPPED = re.compile(r"\\begin\{(equation|align|eqnarray|tabular|verbatim|alltt|
 
 def prose_lines(lines: list[tuple[int, str]]) -> Iterator[list[tuple[int, str]]]:
     """Paragraphs of LaTeX without displayed equations and tables; headings and items are paragraphs."""
-    skip = ""
+    skip, ended = "", False
     paragraph: list[tuple[int, str]] = []
     for number, line in lines:
         if skip:
             if re.search(rf"\\end\{{{skip}\*?\}}", line):
                 skip = ""
+                # a formula may be the end of its sentence
+                if paragraph:
+                    paragraph.append((number, "X." if ended else "X"))
+            elif not re.match(r"\s*\\(label|tag)\{", line):
+                ended = re.search(r"\.\s*(\\(label|tag)\{[^}]*\}\s*)*$", line) is not None
             continue
         if started := SKIPPED.search(line):
             if not re.search(rf"\\end\{{{started[1]}\*?\}}", line):
