@@ -25,13 +25,13 @@ foreach(header boost/version.hpp fmt/format.h Random123/philox.h)
 endforeach()
 get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 set(compile ${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs ${MALUS_EMSCRIPTEN} -std=c++20 -O2 -fexceptions -DFMT_HEADER_ONLY
-  -I${CMAKE_CURRENT_SOURCE_DIR}/cmake/wasm -I${CMAKE_CURRENT_SOURCE_DIR}/generated -I${live}/include "-I${eigen}")
+  -I${CMAKE_CURRENT_SOURCE_DIR}/cmake/wasm -I${CMAKE_CURRENT_SOURCE_DIR}/generated -I${live}/include -I${live}/printed "-I${eigen}")
 set(objects)
 foreach(chapter base/CDVector base/Error base/Limits base/Random base/InputFiles
     light/CDPolarimetricMath light/CDSpectralLocation light/CDSpectralPoint light/CDSpectralUnits light/CDSpectralVector light/Parameters
     surface/Fresnel surface/Microfacets surface/DirectionSampling surface/CDBRDFModel surface/ModelRegistry surface/DHRTorranceSparrow
     surface/BRDFTorranceSparrow surface/TorranceSparrowGather surface/ManyMatrices
-    air/RayleighLight render/ErrorBars live/LiveFigure live/LiveFigures)
+    air/RayleighLight air/NeutralPoints render/ErrorBars live/LiveFigure live/LiveFigures)
   string(REPLACE / - object ${chapter})
   set(object ${live}/${object}.o)
   add_custom_command(

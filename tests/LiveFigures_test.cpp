@@ -3,13 +3,19 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "malus/air/NeutralPoints.hpp"
+#include "malus/air/RayleighLight.hpp"
 #include "malus/base/Angles.hpp"
 #include "malus/light/CDPolarimetricMath.hpp"
 #include "malus/live/LiveFigure.hpp"
+#include "malus/render/ErrorBars.hpp"
+#include "malus/surface/BRDFTorranceSparrow.hpp"
 #include "malus/surface/Fresnel.hpp"
+#include "malus/thesis/Section71.hpp"
 
 using namespace malus;
 
@@ -87,7 +93,8 @@ TEST(LiveFigures, DigitsAreFiveAndZeroIsZero) {
   EXPECT_EQ(liveDigits(1.1803984), "1.1804");
   EXPECT_EQ(liveDigits(-1e-17), "0");
   EXPECT_EQ(liveDigits(9e-7), "0");
-  EXPECT_EQ(liveDigits(2e-6), "2e-06");
+  EXPECT_EQ(liveDigits(3.12271e-5), "0.000031227");
+  EXPECT_EQ(liveDigits(123456.7), "1.2346e+05");
 }
 
 TEST(LiveFigures, StokesVectorIsTheOneOfItsEllipse) {
@@ -134,4 +141,96 @@ TEST(LiveFigures, FresnelIsTheReflectanceOfTheBoundary) {
   EXPECT_EQ(text(live, "Rp"), liveDigits(at.Rp));
   EXPECT_EQ(curve(live, "Rs")[70], at.Rs);
   EXPECT_EQ(text(answer("fresnel"), "least Rp at"), liveDigits(toDegrees(brewsterAngle(2))));
+}
+
+TEST(LiveFigures, LobeIsTheModelOfTheCommand) {
+  const LiveAnswer live = answer(
+      "lobe",
+      {{"n", 1.5}, {"k", 0}, {"sigma", 0.3}, {"theta_r", 55}, {"phi", 120}, {"diffuse", 2}});
+  const BRDFTorranceSparrow model(1.5, 0, 0.3, {Shadowing::vGroove, DiffuseTerm::reciprocal});
+  const CDMuellerMatrix f = model.at(BRDFGeometry::fromDegrees(30, 55, 120));
+  for (int i = 0; i < 16; ++i)
+    EXPECT_EQ(live.numbers[std::size_t(i)].text, liveDigits(f.getMueller(i / 4, i % 4)));
+  const auto &zenith = curve(live, "zenith"), &f00 = curve(live, "f00");
+  for (std::size_t i = 0; i < zenith.size(); ++i)
+    if (zenith[i] == 55) {
+      EXPECT_EQ(f00[i], f.getScalar());
+    } else if (zenith[i] == -20) {
+      EXPECT_EQ(f00[i], model.at(BRDFGeometry::fromDegrees(30, 20, 300)).getScalar());
+    }
+}
+
+TEST(LiveFigures, PlateBeginsWithTheParametersOfTheThesis) {
+  const std::vector<double> values = initial(figure("plate"));
+  EXPECT_EQ(std::vector<double>(values.begin(), values.begin() + 5),
+            (std::vector<double>{CopperPlate::n, CopperPlate::k, CopperPlate::sigma,
+                                 CopperPlate::theta_i_deg, CopperPlate::theta_r_deg}));
+  const std::vector<double> lobe = initial(figure("lobe"));
+  EXPECT_EQ(std::vector<double>(lobe.begin(), lobe.begin() + 6),
+            (std::vector<double>{CopperPlate::n, CopperPlate::k, CopperPlate::sigma,
+                                 CopperPlate::theta_i_deg, CopperPlate::theta_r_deg,
+                                 CopperPlate::phi_deg}));
+}
+
+TEST(LiveFigures, PlateShowsPrintedAndComputedDigits) {
+  const LiveAnswer live = answer("plate", {{"light", 1}});
+  const CDMuellerMatrix f = copperPlateBRDF();
+  const CDStokesVector L = reflectedRadiance(f, {100, 30, 40, 0});  // second row of table 7.1
+  std::size_t differ = 0;
+  for (const LiveNumber& number : live.numbers) differ += number.text != number.printed;
+  EXPECT_EQ(live.numbers.size(), 27U);
+  EXPECT_GT(differ, 0U);  // f33 has the wrong sign in print
+  EXPECT_EQ(text(live, "f33"), "-1.131");
+  EXPECT_EQ(text(live, "f23"), "0.3026");
+  EXPECT_NEAR(std::stod(text(live, "L1 manual")), L.getStokes(1), 0.005);
+  EXPECT_NEAR(std::stod(text(live, "L3 traced")), L.getStokes(3), 0.005);
+  EXPECT_NEAR(std::stod(text(live, "DoLP traced")), 100 * L.getDOLP(), 0.05);
+}
+
+TEST(LiveFigures, SkyIsRayleighsAndHasItsNeutralPoints) {
+  const LiveAnswer live =
+      answer("sky", {{"sun", 75}, {"tau", 0.3}, {"albedo", 0.25}, {"theta", 31}, {"phi", 200}});
+  const RayleighAtmosphere air(0.3);
+  const RayleighLight light(air, std::cos(toRadians(75)), 0.25, std::numbers::pi);
+  const auto dome = [&](double zenith_deg, double phi_rad) {
+    return light.down(std::cos(toRadians(zenith_deg)),
+                      RayleighLight::Azimuth::fromRadians(phi_rad));
+  };
+  const CDStokesVector here = dome(31, toRadians(200));
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(text(live, "S" + std::to_string(i)), liveDigits(here.getStokes(i)));
+  const std::vector<NeutralPoint> points = neutralPoints(dome, 75);
+  ASSERT_EQ(points.size(), 2U);
+  for (const NeutralPoint& point : points)
+    EXPECT_EQ(text(live, point.name), liveDigits(point.zenith_deg));
+  EXPECT_EQ(curve(live, "dome")[31 * 180 + 100], here.getDOLP());
+  EXPECT_EQ(curve(answer("sky", {{"quantity", 2}}), "dome").size(), 91U * 180U);
+}
+
+TEST(LiveFigures, BiasIsTakenOffAsTheProductsDo) {
+  // unpolarised light shows b sqrt(pi/2) (chapter ErrorBars); 2000 draws know it to b sqrt((2 - pi/2)/2000)
+  const LiveAnswer none = answer("bias", {{"p0", 0}, {"b", 2}});
+  EXPECT_NEAR(std::stod(text(none, "bias")), std::sqrt(std::numbers::pi / 2),
+              4 * std::sqrt((2 - std::numbers::pi / 2) / 2000));
+  EXPECT_LT(std::stod(text(none, "bias left")), std::stod(text(none, "bias")));
+  const LiveAnswer strong = answer("bias", {{"p0", 10}, {"b", 1}});
+  EXPECT_NEAR(std::stod(text(strong, "bias left")), 0, 4 / std::sqrt(2000.0));
+  double all = 0;
+  for (const double share : curve(strong, "count")) all += share;
+  EXPECT_NEAR(all, 1, 0.01);  // a few are beyond four standard errors
+  EXPECT_NE(text(answer("bias", {{"seed", 2}}), "mean"), text(answer("bias"), "mean"));
+}
+
+TEST(LiveFigures, EverySamplingEstimatesTheReflectance) {
+  const BRDFTorranceSparrow copper(CopperPlate::n, CopperPlate::k, 0.3,
+                                   {Shadowing::vGroove, DiffuseTerm::none});
+  for (int method = 0; method < 5; ++method) {
+    const LiveAnswer live =
+        answer("sampling", {{"method", method}, {"count", 1024}, {"sigma", 0.3}});
+    SCOPED_TRACE(method);
+    EXPECT_EQ(text(live, "exact"), liveDigits(copper.getDHR(toRadians(40))[0]));
+    EXPECT_LT(std::abs(std::stod(text(live, "error"))),
+              method < 2 ? 20 : 3);  // 1024 random directions: 4 % is a standard error
+    EXPECT_EQ(std::to_string(curve(live, "zenith").size()), text(live, "directions"));
+  }
 }

@@ -7,9 +7,11 @@ there is one, with the command of malus. The book must show each figure that the
 
 `live_test.py --times` prints how long sliders and pages take; no test depends on that.
 """
+import csv
 import ctypes
 import glob
 import json
+import math
 import os
 import re
 import statistics
@@ -37,7 +39,7 @@ MOVE = """(([name, control, value]) => {
             one.querySelector(".live-number").textContent]),
           message: figure.querySelector(".live-message").textContent,
           alternative: figure.querySelector(".live-picture").getAttribute("aria-label"),
-          drawn: figure.querySelectorAll("svg, canvas").length,
+          drawn: figure.querySelectorAll("svg, .live-printed").length,
           milliseconds: Number(figure.dataset.milliseconds)};
 })(%s)"""
 
@@ -74,8 +76,8 @@ def homes(book: str) -> dict[str, str]:
 
 
 def close(shown: str, value: float) -> bool:
-    """Whether a text of five digits is a value, written alike."""
-    return shown.replace("\u2212", "-") == ("0" if abs(value) < 1e-6 else f"{value:.5g}")
+    """Whether a text of five digits is a value, rounded alike."""
+    return float(shown.replace("\u2212", "-")) == (0 if abs(value) < 1e-6 else float(f"{value:.5g}"))
 
 
 def steps(control: dict[str, Any]) -> list[float]:
@@ -142,6 +144,37 @@ class LiveFigures(unittest.TestCase):
             self.assertEqual(self.page.complaints(), [])
         self.assertGreater(compared, 100)
 
+    def test_numbers_are_those_of_the_command(self) -> None:
+        self.page.show(self.homes["lobe"])
+        for moved in ({}, {"n": 1.5, "k": 0.0, "sigma": 0.11}, {"theta_i": 60, "theta_r": 71, "phi": 135}, {"diffuse": 2}):
+            for control, value in moved.items():
+                shown = self.page.move("lobe", control, value)
+            shown = self.page.move("lobe")
+            n, k, sigma, theta_i, theta_r, phi, diffuse = shown["values"]
+            answer = self.malus("brdf", "--model", "torrance-sparrow", "--param", f"n={n}", "--param", f"k={k}", "--param", f"sigma={sigma}",
+                                "--param", "diffuse=" + ["none", "thesis", "reciprocal"][int(diffuse)],
+                                "--theta-i-deg", f"{theta_i}", "--theta-r-deg", f"{theta_r}", "--phi-deg", f"{phi}", "--format", "csv")
+            self.assertEqual(len(shown["numbers"]), 20)
+            for label, text in shown["numbers"][:16]:
+                self.assertTrue(close(text, float(answer[label])), f"{label}: {text}, malus brdf {answer[label]}")
+        self.page.show(self.homes["sky"])
+        for moved in ({}, {"sun": 82, "tau": 0.5}, {"albedo": 0.8, "theta": 33, "phi": 200}):
+            for control, value in moved.items():
+                self.page.move("sky", control, value)
+            shown = self.page.move("sky")
+            sun, tau, albedo, theta, phi, _ = shown["values"]
+            answer = self.malus("sky", "--tau", f"{tau}", "--albedo", f"{albedo}", "--mu0", repr(math.cos(math.radians(sun))),
+                                "--mu", repr(math.cos(math.radians(theta))), "--phi-deg", f"{phi}")
+            for (_, text), column in zip(shown["numbers"], "IQUV"):
+                self.assertTrue(close(text, float(answer[column])), f"{column}: {text}, malus sky {answer[column]}")
+
+    @staticmethod
+    def malus(*arguments: str) -> dict[str, str]:
+        """The row that a command prints as CSV."""
+        done = subprocess.run([MALUS, *arguments], capture_output=True, text=True, check=True)
+        rows = list(csv.DictReader(line for line in done.stdout.splitlines() if not line.startswith("#")))
+        return rows[0]
+
     def test_keys_words_and_reset(self) -> None:
         for figure in self.native.figures:
             name = figure["name"]
@@ -169,7 +202,7 @@ class LiveFigures(unittest.TestCase):
                 document = self.page.call("DOM.getDocument")["root"]["nodeId"]
                 html = self.page.call("DOM.getOuterHTML", nodeId=document)["outerHTML"]
                 self.assertEqual(html.count('class="live" data-live'), len(re.findall(r'data-live="[^"]*" hidden', html)))
-                self.assertIn("<img", html)
+                self.assertTrue("<img" in html or "<table" in html, path)
         finally:
             self.page.call("Emulation.setScriptExecutionDisabled", value=False)
 

@@ -16,7 +16,7 @@
     return element;
   };
   const place = (value) => Number(value.toFixed(2));
-  const minus = (words) => String(words).replace("-", "−");
+  const minus = (words) => String(words).replaceAll("-", "−");
   const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${place(x)} ${place(y)}`).join("");
 
   // ---------------------------------------------------------------- the program
@@ -141,6 +141,49 @@
     return drawing.svg;
   };
 
+  // colours between some of the map viridis, and a circle of hues for angles
+  const viridis = [[68, 1, 84], [71, 45, 123], [59, 82, 139], [44, 114, 142], [33, 145, 140], [40, 174, 128], [94, 201, 98], [173, 220, 48], [253, 231, 37]];
+  const circle = [[226, 217, 226], [110, 144, 192], [94, 67, 165], [47, 20, 54], [134, 38, 79], [192, 100, 80], [226, 217, 226]];
+  const colour = (part, cyclic) => {
+    const map = cyclic ? circle : viridis, at = Math.min(Math.max(part, 0), 1) * (map.length - 1), i = Math.min(Math.floor(at), map.length - 2);
+    return map[i].map((low, k) => Math.round(low + (at - i) * (map[i + 1][k] - low)));
+  };
+  const shades = [false, true].map((cyclic) => Uint32Array.from({ length: 256 }, (_, i) => {
+    const [red, green, blue] = colour(i / 255, cyclic);
+    return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
+  }));
+  // a disk of values on rings and azimuths; the cell of each pixel is found once
+  const cells = new Map();
+  const dome = (values, rings, azimuths, size, most, cyclic) => {
+    const canvas = make("canvas", { width: size, height: size }), context = canvas.getContext("2d"), image = context.createImageData(size, size);
+    if (!cells.has(size)) {
+      const found = new Int32Array(size * size).fill(-1);
+      for (let y = 0; y < size; ++y)
+        for (let x = 0; x < size; ++x) {
+          const right = (x + 0.5) / size * 2 - 1, down = (y + 0.5) / size * 2 - 1, r = Math.hypot(right, down);
+          if (r > 1) continue;
+          const turn = Math.atan2(-right, down) / (2 * Math.PI);
+          found[y * size + x] = Math.round(r * (rings - 1)) * azimuths + Math.round((turn + 1) * azimuths) % azimuths;
+        }
+      cells.set(size, found);
+    }
+    const pixels = new Uint32Array(image.data.buffer), found = cells.get(size), shade = shades[Number(cyclic)];
+    const tone = Uint32Array.from(values, (value) => shade[Math.round(Math.min(value / most, 1) * 255)]);
+    for (let i = 0; i < found.length; ++i) if (found[i] >= 0) pixels[i] = tone[found[i]];
+    context.putImageData(image, 0, 0);
+    return canvas;
+  };
+  // what the colours mean
+  const scaleOf = (most, cyclic, words) => {
+    const drawing = new Drawing(110, 306);
+    for (let i = 0; i < 100; ++i)
+      drawing.add("rect", { x: 20, y: 290 - 2.7 * (i + 1), width: 18, height: 3, style: `fill: rgb(${colour(i / 99, cyclic)})` });
+    drawing.add("rect", { x: 20, y: 20, width: 18, height: 270, class: "frame" });
+    for (const at of cyclic ? [0, 45, 90, 135, 180] : ticks(0, most)) drawing.text(46, 290 - 270 * at / most + 4.5, String(at));
+    drawing.text(110, 155, words, { "text-anchor": "middle", transform: "rotate(-90 103 155)" });
+    return drawing.svg;
+  };
+
   // ---------------------------------------------------------------- the figures
   const draw = {
     stokes({ curve }) {
@@ -159,6 +202,68 @@
       plot.curve(curve.angle, curve.passed, "first");
       if (value.second) plot.dot(value.second_angle, curve.last[0]);
       return [drawing.svg, plot.drawing.svg];
+    },
+    lobe({ curve }, value, narrow) {
+      const xAxis = { x: [-90, 90], xTicks: narrow ? [-90, -45, 0, 45, 90] : [-90, -60, -30, 0, 30, 60, 90], xLabel: "zenith angle of the viewer [°]" };
+      const top = Math.max(...curve.f00, curve.here[0]);
+      const f00 = new Plot(narrow, { ...xAxis, height: 200, y: [0, top * 1.05 || 1], yLabel: "f00 [sr⁻¹]" });
+      f00.curve(curve.zenith, curve.f00, "first");
+      f00.upright(-value.theta_i, "source"), f00.upright(value.theta_r);
+      f00.dot(value.theta_r, curve.here[0]);
+      const dolp = new Plot(narrow, { ...xAxis, height: 120, y: [0, 1], yLabel: "DoLP" });
+      dolp.curve(curve.zenith, curve.DoLP, "second");
+      dolp.upright(value.theta_r);
+      return [f00.drawing.svg, dolp.drawing.svg];
+    },
+    plate() { return []; },
+    sky({ curve }, value) {
+      const side = 300, middle = side / 2, radius = 140, drawing = new Drawing(side, side + 6);
+      const to = (zenith, phi) => [middle - radius * zenith / 90 * Math.sin(phi * Math.PI / 180), middle + radius * zenith / 90 * Math.cos(phi * Math.PI / 180)];
+      const scale = value.quantity === 0 ? Math.max(...curve.dome) : value.quantity === 1 ? 1 : 180;
+      const canvas = dome(curve.dome, 91, 180, 4 * radius, scale, value.quantity === 2);
+      const inside = drawing.add("foreignObject", { x: middle - radius, y: middle - radius, width: 2 * radius, height: 2 * radius });
+      inside.append(canvas);
+      drawing.add("circle", { cx: middle, cy: middle, r: radius, class: "frame" });
+      const cross = ([x, y], r, kind) => { drawing.line([[x - r, y - r], [x + r, y + r]], kind); drawing.line([[x - r, y + r], [x + r, y - r]], kind); };
+      for (const zenith of curve.points) for (const kind of ["halo", "point"]) cross(to(zenith, 0), 5, kind);
+      for (const kind of ["halo", "point"]) drawing.dot(...to(value.sun, 0), `line ${kind}`, 8);
+      const [x, y] = to(value.theta, value.phi);
+      for (const kind of ["halo", "point"]) drawing.add("rect", { x: x - 5, y: y - 5, width: 10, height: 10, class: `line ${kind}` });
+      return [drawing.svg, scaleOf(scale, value.quantity === 2, ["radiance", "DoLP", "AoLP [°]"][value.quantity])];
+    },
+    bias({ curve }, value, narrow) {
+      const [widest, measured, debiased] = curve.scale, size = narrow ? 290 : 270;
+      const cloud = new Drawing(350, size + 66), at = (x, y) => [60 + (x + widest) / (2 * widest) * size, 12 + (widest - y) / (2 * widest) * size];
+      cloud.add("rect", { x: 60, y: 12, width: size, height: size, class: "frame" });
+      for (const tick of ticks(-widest, widest)) {
+        cloud.line([at(tick, -widest), at(tick, widest)], "grid"), cloud.line([at(-widest, tick), at(widest, tick)], "grid");
+        cloud.text(at(tick, 0)[0], size + 30, minus(tick), { "text-anchor": "middle" });
+        cloud.text(52, at(0, tick)[1] + 4.5, minus(tick), { "text-anchor": "end" });
+      }
+      curve.S1.forEach((s1, i) => { if (Math.max(Math.abs(s1), Math.abs(curve.S2[i])) < widest) cloud.dot(...at(s1, curve.S2[i]), "draw", 1.8); });
+      const [x, y] = at(value.p0, 0);
+      cloud.line([[x - 7, y], [x + 7, y]], "second"), cloud.line([[x, y - 7], [x, y + 7]], "second");
+      cloud.text(60 + size / 2, size + 52, "S1 / S0 [%]", { "text-anchor": "middle" });
+      cloud.text(14, 12 + size / 2, "S2 / S0 [%]", { "text-anchor": "middle", transform: `rotate(-90 14 ${12 + size / 2})` });
+      const bars = new Plot(true, { height: size - (narrow ? 80 : 0), x: [0, widest], y: [0, Math.max(...curve.count) * 1.1], xLabel: "measured DoLP [%]", yLabel: "share of the measurements" });
+      const width = widest / curve.count.length;
+      curve.count.forEach((count, i) => {
+        const [left, top] = bars.to(i * width, count), [right, bottom] = bars.to((i + 1) * width, 0);
+        bars.drawing.add("rect", { x: place(left), y: place(top), width: place(right - left), height: place(bottom - top), class: "bar" });
+      });
+      bars.upright(value.p0), bars.upright(measured, "second"), bars.upright(debiased, "first");
+      return [cloud.svg, bars.drawing.svg];
+    },
+    sampling({ curve }, value) {
+      const side = 320, middle = side / 2, radius = 148, drawing = new Drawing(side, side);
+      const to = (zenith, phi) => [middle + radius * zenith / 90 * Math.cos(phi * Math.PI / 180), middle - radius * zenith / 90 * Math.sin(phi * Math.PI / 180)];
+      for (const zenith of [30, 60, 90]) drawing.add("circle", { cx: middle, cy: middle, r: radius * zenith / 90, class: zenith === 90 ? "frame" : "ring" });
+      for (const zenith of [30, 60]) drawing.text(middle + 3, middle - radius * zenith / 90 - 3, `${zenith}°`, { class: "small" });
+      const most = Math.max(...curve.share, 1e-12);
+      curve.zenith.forEach((zenith, i) => drawing.dot(...to(zenith, curve.azimuth[i]), "sample", 1 + 4.5 * Math.sqrt(Math.max(curve.share[i], 0) / most)));
+      const [x, y] = to(value.viewer, 0);
+      drawing.add("rect", { x: x - 5, y: y - 5, width: 10, height: 10, class: "line second" });
+      return drawing.svg;
     },
     fresnel({ curve }, value, narrow) {
       const plot = new Plot(narrow, { x: [0, 90], y: [0, 1], xTicks: [0, 15, 30, 45, 60, 75, 90], xLabel: "angle of incidence [°]",
@@ -232,16 +337,19 @@
         return make("div", {}, make("dt", {}, label), value);
       }));
     }
-    // what fills a table of the program, while nothing else is to be done
+    // what fills a table of the program, while nothing else is to be done: all values of some controls with each other
     prepare() {
-      const work = [];
+      let all = [this.figure.controls.map((control) => control.initial)];
       this.figure.controls.forEach((control, i) => {
         if (!control.prepared) return;
-        const steps = Math.round((control.most - control.least) / control.step);
-        for (let step = 0; step <= steps; ++step)
-          work.push(() => this.program.evaluate(this.figure, this.figure.controls.map((one, j) => j === i ? control.least + step * control.step : one.initial)));
+        const input = make("input", { type: "range", min: control.least, max: control.most, step: control.step });
+        const count = Math.round((control.most - control.least) / control.step);
+        all = Array.from({ length: count + 1 }, (_, step) => {
+          input.value = control.least + step * control.step;  // rounded as a slider does
+          return all.map((values) => values.with(i, Number(input.value)));
+        }).flat();
       });
-      return work;
+      return all.length > 1 ? all.map((values) => () => this.program.evaluate(this.figure, values)) : [];
     }
   }
 
