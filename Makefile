@@ -21,22 +21,25 @@ TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 python3-
 MPI     := libopenmpi-dev
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
+# what compiles the live figures of the book; without it the static figures stay
+LIVE    := emscripten
 
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all prose test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
-.PHONY: need-mpi need-program need-book need-test need-browser need-press need-paper
+.PHONY: need-mpi need-program need-book need-test need-browser need-live need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
 all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the book, print the verdict
 	@cmake --build $(BUILD) -j $(JOBS) --target everything
 	@cat $(BUILD)/report/summary.txt
+	@command -v em++ >/dev/null || echo "The book's figures do not move: install $(LIVE) and run make again."
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-test need-browser need-press $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
+test: need-test need-browser need-live need-press $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
 	@cmake --build $(BUILD) -j $(JOBS) --target all everything $$(command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
@@ -209,6 +212,10 @@ need-test:
 
 need-browser:
 	@$(NEED) $(BROWSER) || echo "The book's pages are not looked at in a browser."
+
+need-live:
+	@$(NEED) $(LIVE) || echo "The book's figures do not move."
+	@test ! -e $(BUILD)/CMakeCache.txt || cmake $(BUILD) >/dev/null 2>&1
 
 need-press:
 	@$(NEED) $(PAPER) || echo "The book is not printed, and so what LaTeX says of it is not heard."

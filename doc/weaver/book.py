@@ -239,6 +239,7 @@ def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
     arguments.add_argument("--drawn", default="", help="the folder of the figures that the build draws of the chapters")
+    arguments.add_argument("--live", default="", help="the program of the live figures; without it they are left out")
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
     arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")
     arguments.add_argument("chapters", nargs="+")

@@ -118,6 +118,8 @@ class Finisher:
         """All that is done to the tree of a page."""
         for chunk in page.tree.xpath('.//p[@class="ltx_p lit-chunk"]'):
             self.chunk(chunk)
+        for figure in page.tree.xpath('.//p[@class="ltx_p lit-live"]'):
+            self.live_figure(figure)
         for element in page.tree.iter(etree.Element):
             self.without_paper(element)
         for table in page.tree.xpath(".//table"):
@@ -278,6 +280,13 @@ class Finisher:
             replace(place, self.hole(drawing.replace("<svg ", begin, 1)))
         else:
             replace(place, E.img({"src": f"figures/{name}{os.path.splitext(path)[1]}", "alt": words}, size_of(path)))
+
+    def live_figure(self, place: Element) -> None:
+        """Where a script puts a figure that moves; nothing without the program that it needs."""
+        figure = f'<figure class="live" data-live="{escape(place.text, quote=True)}" hidden>\n<p>Live figure</p>\n</figure>'
+        around = place.getparent()
+        alone = around.get("class") == "ltx_para" and len(around) == 1
+        replace(around if alone else place, self.hole(figure if self.links.options.live else ""))
 
     # ------------------------------------------------------------ links
     def address_of(self, page: Page, label: str) -> str:
@@ -455,6 +464,9 @@ class HtmlBook(book.Book):
         out.put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES], self.listings.identifiers))
         for name in ("search.js", "book.css"):
             out.copy(name, os.path.join(self.options.book, name))
+        if self.options.live:
+            out.copy("live.js", os.path.join(self.options.book, "live.js"))
+            out.copy("live-program.js", self.options.live)
         for font in FONTS:
             if not os.path.exists(font):
                 raise Problem(font, 0, "not found; Debian's packages fonts-texgyre and fonts-texgyre-math bring it")
