@@ -44,9 +44,9 @@ book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
 	@cmake --build $(BUILD) -j $(JOBS) --target book
 	@echo "The book: $(BUILD)/book/index.html"
 
-pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (PDF)
+pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (two PDFs)
 	@cmake --build $(BUILD) -j $(JOBS) --target pdf
-	@echo "The book: $(BUILD)/malus.pdf"
+	@echo "The book: $(BUILD)/malus-1.pdf, $(BUILD)/malus-2.pdf"
 
 reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
