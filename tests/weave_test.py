@@ -25,6 +25,7 @@ WEAVER = os.path.join(ROOT, "doc", "weaver")
 sys.path.insert(0, WEAVER)
 import book  # noqa: E402
 import contents  # noqa: E402
+import finder  # noqa: E402
 import latexml  # noqa: E402
 import listing  # noqa: E402
 import names  # noqa: E402
@@ -355,6 +356,75 @@ class SpoiledBook(Workshop):
 
     def test_script(self) -> None:
         self.spoiled("index.html", "</main>", "<script></script></main>", "a script")
+
+
+class Site(Workshop):
+    """What make site collects, and what the archive of make dist has."""
+
+    REPORT = '<!DOCTYPE html><html lang="en"><head><title>r</title></head><body><h1>r</h1><img src="F3.9/fresnel.svg" alt="a"></body></html>'
+
+    def collect(self) -> tuple[int, str]:
+        """(exit code, complaints)"""
+        self.assertEqual(self.weave(), (0, ""))
+        self.put("report/report.html", self.REPORT)
+        self.put("malus-1.pdf", "%PDF-")
+        self.put("deb/malus_1_amd64.deb", "!<arch>")
+        done = subprocess.run([os.path.join(WEAVER, "collect.py"), "--out", "site", "--book", "book", "--report", "report", "--paper",
+                               "malus-1.pdf", "malus-2.pdf", "--packages", "deb", "wheel"], cwd=self.dir, capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def test_all_is_there_and_linked_from_the_title_page(self) -> None:
+        self.assertEqual(self.collect(), (0, ""))
+        with open(os.path.join(self.dir, "site", "index.html"), encoding="utf-8") as file:
+            title = file.read()
+        for address in ("malus-1.pdf", "report/report.html", "packages/index.html"):
+            self.assertIn(f'href="{address}"', title)
+            self.assertTrue(os.path.exists(os.path.join(self.dir, "site", address)))
+        self.assertNotIn("malus-2.pdf", title)
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "site/report/values.tex")))
+        with open(os.path.join(self.dir, "site/packages/index.html"), encoding="utf-8") as file:
+            self.assertIn('<a href="malus_1_amd64.deb">', file.read())
+
+    def test_negative_control_a_picture_that_the_report_lacks(self) -> None:
+        self.REPORT = self.REPORT.replace("fresnel.svg", "lost.svg")  # pylint: disable=invalid-name
+        code, said = self.collect()
+        self.assertEqual(code, 1)
+        self.assertIn("site/report/report.html:1: F3.9/lost.svg does not exist", said)
+
+
+class Search(unittest.TestCase):
+    """What the search can find."""
+
+    BODY = """<section class="ltx_chapter" id="ch"><h1>Rough metal</h1><p>Many small facets.</p>
+<section class="ltx_section" id="one"><h2>Slopes</h2><p>The angle <math alttext="\\sigma_{i}"><mi>s</mi></math> counts.</p>
+<section class="ltx_paragraph" id="hand"><h3>By hand.</h3><p>Two steps.</p></section></section></section>"""
+
+    def index(self, name: str = "notation") -> dict[str, Any]:
+        """The index of one page with a chunk."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "code.nw")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write('Text.\n<<Complain>>=\nthrow Error("the camera is below the ground", "x");\n@\n')
+            chunks = noweb.read([path])[0].chunks
+        page = book.Page(name, "", "")
+        page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
+        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
+        return found
+
+    def test_sections_have_their_text_and_small_parts_belong_to_them(self) -> None:
+        index = self.index()
+        self.assertEqual(index["sections"], [[0, "ch", "Rough metal", 0], [0, "one", "Slopes", 0], [0, "chunk-complain", "Complain", 1]])
+        self.assertEqual(index["texts"][0], "Many small facets.")
+        self.assertEqual(index["texts"][1], "The angle counts. By hand. Two steps.")
+
+    def test_messages_of_the_program_are_found_and_greek_letters_in_the_notation(self) -> None:
+        index = self.index()
+        self.assertEqual(index["texts"][2], "the camera is below the ground")
+        self.assertEqual(index["words"]["camera"], "3")
+        self.assertEqual(index["words"]["sigma"], "2")
+        self.assertNotIn("sigma", self.index("other")["words"])
+        self.assertNotIn("the", index["words"])
 
 
 PAPER = {"lualatex": "texlive-luatex", "rsvg-convert": "librsvg2-bin", "kpsewhich": "texlive-binaries"}

@@ -78,7 +78,8 @@ function snippet(section) {
     return terms.some((term) => low === term || stem(low) === roots.get(term) || (term.length > 2 && low.startsWith(term)));
   });
   const first = hits.length ? hits[0].index : 0;
-  const begin = first > AROUND ? text.indexOf(" ", first - AROUND) + 1 : 0, end = Math.min(text.length, begin + 2.4 * AROUND);
+  const begin = first > AROUND ? text.indexOf(" ", first - AROUND) + 1 : 0, wide = begin + Math.round(2.4 * AROUND);
+  const end = wide < text.length ? text.lastIndexOf(" ", wide) : text.length;
   let place = begin;
   line.append(begin ? "… " : "");
   for (const hit of hits) {

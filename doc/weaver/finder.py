@@ -21,8 +21,9 @@ other our out over own same see she should since some such than that the their t
 too under until upon used uses was way were what when where which while who whose why will with without would yet you""".split())
 HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
 DIVISIONS = ("ltx_chapter", "ltx_section", "ltx_subsection")  # what is found; smaller ones belong to these
+APART = HEADINGS + ("p", "li", "dt", "dd", "td", "th", "pre")  # no word goes on from one to the next
 UNREAD_TAGS = ("math", "svg")
-UNREAD_CLASSES = ("chunk-foot", "permalink", "ltx_tag", "source", "folded")
+UNREAD_CLASSES = ("chunk-foot", "chunk-number", "defines", "permalink", "ltx_tag", "source", "folded")
 WORD = re.compile(r"\w+")
 GREEK = re.compile(r"\\((?:alpha|beta|gamma|delta|epsilon|varepsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi|varphi"
                    r"|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega))(?![a-zA-Z])")
@@ -96,10 +97,12 @@ def fill(sections: list[Section], element: Any) -> None:
     if element.tag in HEADINGS and not sections[-1].title:
         sections[-1].title = in_one_line("".join(read_aloud(element)))
         return
-    sections[-1].pieces.append(element.text or "")
+    apart = " " if element.tag in APART else ""
+    sections[-1].pieces.append(apart + (element.text or ""))
     for child in element:
         fill(sections, child)
         sections[-1].pieces.append(child.tail or "")
+    sections[-1].pieces.append(apart)
 
 
 def sections_of(page: "Page") -> list[Section]:
