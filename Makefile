@@ -27,7 +27,7 @@ LIVE    := emscripten
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
+.PHONY: all prose test book pdf site reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
 .PHONY: need-mpi need-program need-book need-test need-browser need-live look-live need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -40,16 +40,22 @@ all: need-book $(BUILD)/CMakeCache.txt look-live ## build, reproduce the thesis,
 	@echo "The book:   $(BUILD)/book/index.html"
 
 test: need-test need-browser need-live need-press $(BUILD)/CMakeCache.txt look-live ## build and run all tests, the weaver's and the book's as well
-	@cmake --build $(BUILD) -j $(JOBS) --target all everything $$(command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
+	@cmake --build $(BUILD) -j $(JOBS) --target all everything $(PRESS)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
 book: need-book $(BUILD)/CMakeCache.txt look-live ## weave the book (HTML)
 	@cmake --build $(BUILD) -j $(JOBS) --target book
 	@echo "The book: $(BUILD)/book/index.html"
 
-pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (PDF)
+pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (two PDFs)
 	@cmake --build $(BUILD) -j $(JOBS) --target pdf
-	@echo "The book: $(BUILD)/malus.pdf"
+	@echo "The book: $(BUILD)/malus-1.pdf, $(BUILD)/malus-2.pdf"
+
+PRESS = $(shell command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
+site: need-book $(BUILD)/CMakeCache.txt ## all that can be read, for a static host: book, report, PDFs if TeX is there, packages that were made
+	@cmake --build $(BUILD) -j $(JOBS) --target book reproduce $(PRESS)
+	@cmake --build $(BUILD) --target site
+	@echo "The site: $(BUILD)/site/index.html"
 
 reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
@@ -107,14 +113,19 @@ format-check: ## whether the chapters' code and the tests are formatted so
 	@doc/weaver/format.py --check $(shell git ls-files '*.nw')
 	@clang-format --dry-run -Werror $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
 
+LIST ?=
+prose: ## count the mannerisms of English in chapters, messages, comments and README files (LIST=PATTERN lists one)
+	@doc/weaver/prose.py $(if $(LIST),--list "$(LIST)") $(shell git ls-files '*.nw' '*.md' 'doc/book/*.tex' '*.py' | grep -v prose)
+
 lint: ## check types, names and style of the Python (module, weaver, tests, scenes)
 	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex python3-numpy python3-xarray python3-matplotlib python3-pytest
 	@mypy --config-file doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pycodestyle --config doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pylint --rcfile=doc/weaver/setup.cfg --score=no $(shell git ls-files '*.py')
 
-dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
-	@cmake --build $(BUILD) -j $(JOBS) --target dist
+# SITE=no: without what there is to read, as pip wants it
+dist: $(if $(filter no,$(SITE)),need-program,site) $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ and the site inside (SITE=no: the sources alone)
+	@SITE=$(if $(filter no,$(SITE)),,$(CURDIR)/$(BUILD)) cmake --build $(BUILD) -j $(JOBS) --target dist
 
 # what clang++ needs besides for its sanitizers
 CLANG := clang libclang-rt-14-dev

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """A town of a billion triangles, at noon and at night, in visible light and at 10 um.
 
-    scenes/town.py                          writes scenes/generated/town/*.obj and *.csv (about 15 MB) and scenes/generated/town/town.json
-    malus render scenes/generated/town/town.json
+    scenes/town.py                          writes scenes/generated/town/*.obj and *.csv (about 5 MB) and scenes/generated/town/town.json
+    malus render scenes/generated/town/town.json --out out
+    scenes/town-picture.py out/town.0000.img out/town.0001.img town.png
     scenes/town.py --triangles 1e7          a smaller one
 
 The parking lot (parking-lot.py) grown: blocks of houses, parks and lots between streets, with the lot's own cars, trees and glass building.
 Each kind of mesh is kept once; tables say where its copies stand, and the renderer shares its triangles ("shared": true). The number of
-blocks follows from --triangles. It is invented, not surveyed. The same seed gives the same files.
+blocks follows from --triangles. It is invented, not surveyed. The same seed gives the same files. Six days of weather heat it before noon,
+and all things of one kind share their temperatures, facet by facet.
 
 Needs Python 3 and nothing else. Metres, x east, y north, z up; the town is centred on the origin.
 """
@@ -16,6 +18,7 @@ import importlib.machinery
 import importlib.util
 import json
 import math
+import os
 import pathlib
 import random
 from typing import Any
@@ -32,6 +35,7 @@ PATCH = 10.0                       # m: the side of a patch of lawn
 KINDS = ('park', 'houses', 'houses', 'lot')
 LACQUERS = ('black-lacquer', 'white-lacquer', 'silver', 'red-paint')
 NOON_TO_NIGHT_S = 12 * 3600
+BANDS = [450, 550, 650, 10000]     # nm
 
 
 # ---------------------------------------------------------------- meshes
@@ -93,7 +97,7 @@ def square(material: str, side: float) -> Any:
 
 
 MESHES = {'patch': patch, 'house': house, 'tower': tower, 'tree': lot.tree, 'car': lot.car,
-          'asphalt': lambda _: square('asphalt', BLOCK), 'lawn-ground': lambda _: square('soil', BLOCK)}
+          'asphalt': lambda _: square('asphalt', BLOCK), 'lawn-ground': lambda _: square('turf', BLOCK)}
 
 
 # ---------------------------------------------------------------- the town
@@ -166,29 +170,60 @@ def mesh_of(kind: str) -> str:
 
 
 # ---------------------------------------------------------------- the scene
+# What a material is to heat: conductivity W/(m K), density kg/m^3, specific heat J/(kg K), thickness m (None: a half space), temperature K of
+# the back (None: no heat passes it). Matter from ISO 10456:2007, table 3, but for leaves, which are four fifths water and as thick as leaves
+# (they evaporate nothing here, and so are warmer than real ones), and for windows: the glass of two panes with the thermal resistance of the
+# air between them, 0.17 m^2 K/W.
+ROOM_K = 294.0
+HEAT: dict[str, tuple[float, float, float, float | None, float | None]] = {
+    'asphalt': (0.7, 2100, 1000, None, None), 'concrete': (2.0, 2400, 1000, 0.3, ROOM_K), 'soil': (1.5, 1500, 2000, None, None),
+    'plaster': (0.8, 1600, 1000, 0.25, ROOM_K),         # a wall of lime and sand
+    'tiles': (1.0, 2000, 800, 0.02, None),              # of clay, over an insulated attic
+    'glass': (0.14, 830, 750, 0.024, ROOM_K), 'tyre': (0.13, 910, 1100, 0.02, None), 'bark': (0.13, 500, 1600, 0.1, None),
+    'body': (50, 7800, 450, 0.0008, None),              # sheet steel under lacquer
+    'chrome': (50, 7800, 450, 0.002, None), 'leaf': (0.4, 800, 3600, 0.0003, None)}
+# Shares of sunlight that are absorbed where three visible bands do not tell: a leaf reflects and transmits half of it in the near infrared
+# (D. M. Gates, Biophysical Ecology, 1980), a lawn reflects 0.23 (FAO Irrigation and Drainage Paper 56, 1998); metal is guessed.
+SUNLIGHT = {'leaf': 0.5, 'lawn': 0.77, 'metal': 0.4}
+
+
+def thermal(matter: str, sunlight: str = '') -> dict[str, Any]:
+    conductivity, density, specific_heat, thickness, back = HEAT[matter]
+    made = {'conductivity_W_m_K': conductivity, 'density_kg_m3': density, 'specific_heat_J_kg_K': specific_heat}
+    for key, value in (('thickness_m', thickness), ('back_temperature_K', back), ('solar_absorptance', SUNLIGHT.get(sunlight))):
+        if value is not None:
+            made[key] = value
+    return made
+
+
 def materials() -> dict[str, Any]:
-    """Reflectances and constants at 450, 550, 650 and 10000 nm. Invented, of the usual size; temperatures are those of a mild evening."""
-    bands = [450, 550, 650, 10000]
+    """Reflectances and constants in the bands, invented and of the usual size, and what heats and cools them."""
 
-    def matt(values: list[float], kelvin: float) -> dict[str, Any]:
-        return {'model': 'lambertian', 'reflectance': {'wavelength_nm': bands, 'values': values}, 'temperature_K': kelvin}
+    def spectrum(values: list[float]) -> dict[str, Any]:
+        return {'wavelength_nm': BANDS, 'values': values}
 
-    def smooth(n: list[float], k: list[float], sigma: float, kelvin: float) -> dict[str, Any]:
-        return {'model': 'torrance-sparrow', 'n': {'wavelength_nm': bands, 'values': n}, 'k': {'wavelength_nm': bands, 'values': k},
-                'sigma': sigma, 'diffuse': 'none', 'temperature_K': kelvin}
-    varnish = ([1.5, 1.5, 1.49, 1.5], [0, 0, 0, 0.1])
+    def matt(values: list[float], heat: dict[str, Any]) -> dict[str, Any]:
+        return {'model': 'lambertian', 'reflectance': spectrum(values), 'thermal': heat}
+
+    def smooth(n: list[float], k: list[float], sigma: float, heat: dict[str, Any]) -> dict[str, Any]:
+        return {'model': 'torrance-sparrow', 'n': spectrum(n), 'k': spectrum(k), 'sigma': sigma, 'diffuse': 'none', 'thermal': heat}
+
+    def lacquer(below: list[float]) -> dict[str, Any]:
+        return {'model': 'glossy-coating', 'n': 1.5, 'reflectance': spectrum(below), 'sigma': 0.03, 'thermal': thermal('body')}
     aluminium = ([0.6, 0.96, 1.5, 25], [5.4, 6.7, 7.8, 90])
     return {
-        'asphalt': matt([0.08, 0.09, 0.1, 0.04], 297), 'plaster': matt([0.5, 0.6, 0.65, 0.06], 292),
-        'tiles': matt([0.08, 0.12, 0.35, 0.06], 291),
-        'concrete': matt([0.25, 0.3, 0.33, 0.06], 293), 'grass': matt([0.04, 0.1, 0.05, 0.02], 287), 'soil': matt([0.1, 0.15, 0.2, 0.05], 290),
-        'foliage': matt([0.04, 0.11, 0.05, 0.03], 289), 'bark': matt([0.08, 0.1, 0.12, 0.05], 290), 'tyre': matt([0.04, 0.04, 0.04, 0.05], 294),
-        'red-paint': matt([0.04, 0.05, 0.5, 0.08], 292),
-        'black-lacquer': smooth(*varnish, 0.03, 293), 'white-lacquer': smooth(*varnish, 0.05, 291), 'silver': smooth(*aluminium, 0.15, 291),
-        'chrome': smooth(*aluminium, 0.05, 291), 'glass': smooth([1.53, 1.52, 1.51, 2.1], [0, 0, 0, 0.6], 0.02, 290)}
+        'asphalt': matt([0.08, 0.09, 0.1, 0.04], thermal('asphalt')), 'plaster': matt([0.5, 0.6, 0.65, 0.06], thermal('plaster')),
+        'tiles': matt([0.08, 0.12, 0.35, 0.06], thermal('tiles')), 'concrete': matt([0.25, 0.3, 0.33, 0.06], thermal('concrete')),
+        'grass': matt([0.04, 0.1, 0.05, 0.02], thermal('leaf', 'lawn')), 'turf': matt([0.05, 0.11, 0.06, 0.03], thermal('soil', 'lawn')),
+        'foliage': matt([0.04, 0.11, 0.05, 0.03], thermal('leaf', 'leaf')), 'bark': matt([0.08, 0.1, 0.12, 0.05], thermal('bark')),
+        'tyre': matt([0.04, 0.04, 0.04, 0.05], thermal('tyre')),
+        'red-paint': lacquer([0.04, 0.05, 0.5, 0.05]), 'black-lacquer': lacquer([0.02, 0.02, 0.02, 0.05]),
+        'white-lacquer': lacquer([0.75, 0.8, 0.8, 0.05]),
+        'silver': smooth(*aluminium, 0.15, thermal('body', 'metal')), 'chrome': smooth(*aluminium, 0.05, thermal('chrome', 'metal')),
+        'glass': smooth([1.53, 1.52, 1.51, 2.1], [0, 0, 0, 0.6], 0.02, thermal('glass'))}
 
 
-def scene(town: Town, title: str) -> dict[str, Any]:
+def scene(town: Town, title: str, out: pathlib.Path) -> dict[str, Any]:
     geometry: list[dict[str, Any]] = [{'ground': {'z_m': 0, 'material': 'asphalt', 'facet': 'streets'}}]
     for kind in sorted(town.rows):
         entry: dict[str, Any] = {'obj': mesh_of(kind) + '.obj', 'facet_prefix': kind + '.', 'shared': True,
@@ -197,12 +232,15 @@ def scene(town: Town, title: str) -> dict[str, Any]:
             entry['materials'] = {'body': kind[len('car-'):]}
         geometry.append(entry)
     sun = {'latitude_deg': 43.16, 'longitude_deg': -77.61, 'time': '2001-06-10T13:00:00-04:00',
-           'irradiance_W_m2_nm': {'wavelength_nm': [450, 550, 650, 10000], 'values': [1.996, 1.873, 1.589, 2.5e-4]}}
-    pose = {'position_m': [-60, -95, 45], 'look_at_m': [30, 40, 0]}
+           'irradiance_W_m2_nm': {'wavelength_nm': BANDS, 'values': [1.996, 1.873, 1.589, 2.5e-4]}}
+    # the blue sky, and the glow of water vapour and carbon dioxide in the window around 10 um
+    sky = {'model': 'day-and-night', 'glow_optical_depth': {'wavelength_nm': BANDS, 'values': [0, 0, 0, 0.4]},
+           'glow_atmosphere': 'us-standard', 'path_radiance': True}
+    pose = {'position_m': [28, -260, 22], 'look_at_m': [-10, -150, 5]}     # over gardens, towards a parking lot and a park
     return {
-        'malus': 1, 'title': title, 'bands': {'wavelength_nm': [450, 550, 650, 10000]}, 'geometry': geometry, 'materials': materials(),
-        'sun': sun, 'sky': {'model': 'uniform', 'temperature_K': 265},
-        'sensor': {'kind': 'framing', 'width': 480, 'height': 320, 'field_of_view_deg': 60, 'samples_per_pixel': 4, 'jitter': True},
+        'malus': 1, 'title': title, 'bands': {'wavelength_nm': BANDS}, 'geometry': geometry, 'materials': materials(),
+        'sun': sun, 'sky': sky, 'heat': {'weather': os.path.relpath(HERE / 'data' / 'clear-june.csv', out), 'days_before': 6},
+        'sensor': {'kind': 'framing', 'width': 480, 'height': 320, 'field_of_view_deg': 54, 'samples_per_pixel': 4, 'jitter': True},
         'platform': {'poses': [{**pose, 'time_s': 0}, {**pose, 'time_s': NOON_TO_NIGHT_S}]},
         'radiometry': {'sampling': 'importance', 'rays': [8, 2, 1], 'seed': 1}}
 
@@ -227,7 +265,7 @@ def main() -> None:
         lines = ['x_m,y_m,z_m,rotate_z_deg,scale']
         lines += [f'{x:.2f},{y:.2f},{z:.2f},{turn:.1f},{scale:.2f}' for x, y, z, turn, scale in rows]
         (given.out / (kind + '.csv')).write_text('\n'.join(lines) + '\n')
-    made = scene(town, 'A town at noon and at night')
+    made = scene(town, 'A town at noon and at night', given.out)
     if given.flat:
         for entry in made['geometry']:
             entry.pop('shared', None)

@@ -198,8 +198,8 @@ TEST(ThermalAirIdentity, InAScene) {
   EXPECT_NEAR(seen(*made.world.sky, 0.5), planckRadiance(10000, 290) * -std::expm1(-0.8), 1e-7);
   ASSERT_TRUE(made.world.atmosphere);
   scene["sky"]["atmosphere"] = "us-standard";
-  EXPECT_NE(complaint().find("does not say in one way how warm the air is; give temperature_K, "
-                             "or an atmosphere"),
+  EXPECT_NE(complaint().find("does not say in one way how warm the air is; give temperature_K "
+                             "or atmosphere"),
             std::string::npos)
       << complaint();
   scene["sky"].erase("temperature_K");

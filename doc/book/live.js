@@ -153,26 +153,29 @@
     return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
   }));
   // a disk of values on rings and azimuths; the cell of each pixel is found once
-  const cells = new Map();
-  const dome = (values, rings, azimuths, size, most, cyclic) => {
-    const canvas = make("canvas", { width: size, height: size }), context = canvas.getContext("2d"), image = context.createImageData(size, size);
-    if (!cells.has(size)) {
-      const found = new Int32Array(size * size).fill(-1);
+  class Disk {
+    constructor(size, rings, azimuths) {
+      this.canvas = make("canvas", { width: size, height: size });
+      this.context = this.canvas.getContext("2d");
+      this.image = this.context.createImageData(size, size);
+      this.pixels = new Uint32Array(this.image.data.buffer);
+      this.cells = new Int32Array(size * size).fill(-1);
       for (let y = 0; y < size; ++y)
         for (let x = 0; x < size; ++x) {
           const right = (x + 0.5) / size * 2 - 1, down = (y + 0.5) / size * 2 - 1, r = Math.hypot(right, down);
           if (r > 1) continue;
           const turn = Math.atan2(-right, down) / (2 * Math.PI);
-          found[y * size + x] = Math.round(r * (rings - 1)) * azimuths + Math.round((turn + 1) * azimuths) % azimuths;
+          this.cells[y * size + x] = Math.round(r * (rings - 1)) * azimuths + Math.round((turn + 1) * azimuths) % azimuths;
         }
-      cells.set(size, found);
     }
-    const pixels = new Uint32Array(image.data.buffer), found = cells.get(size), shade = shades[Number(cyclic)];
-    const tone = Uint32Array.from(values, (value) => shade[Math.round(Math.min(value / most, 1) * 255)]);
-    for (let i = 0; i < found.length; ++i) if (found[i] >= 0) pixels[i] = tone[found[i]];
-    context.putImageData(image, 0, 0);
-    return canvas;
-  };
+    paint(values, most, cyclic) {
+      const { cells, pixels } = this, shade = shades[Number(cyclic)];
+      const tone = Uint32Array.from(values, (value) => shade[Math.round(Math.min(value / most, 1) * 255)]);
+      for (let i = 0; i < cells.length; ++i) if (cells[i] >= 0) pixels[i] = tone[cells[i]];
+      this.context.putImageData(this.image, 0, 0);
+      return this.canvas;
+    }
+  }
   // what the colours mean
   const scaleOf = (most, cyclic, words) => {
     const drawing = new Drawing(110, 306);
@@ -219,11 +222,12 @@
       return [f00.drawing.svg, dolp.drawing.svg];
     },
     plate() { return []; },
-    sky({ curve }, value) {
+    sky({ curve }, value, _, figure) {
       const side = 300, middle = side / 2, radius = 140, drawing = new Drawing(side, side + 6);
       const to = (zenith, phi) => [middle - radius * zenith / 90 * Math.sin(phi * Math.PI / 180), middle + radius * zenith / 90 * Math.cos(phi * Math.PI / 180)];
       const scale = value.quantity === 0 ? Math.max(...curve.dome) : value.quantity === 1 ? 1 : 180;
-      const canvas = dome(curve.dome, 91, 180, 4 * radius, scale, value.quantity === 2);
+      figure.disk = figure.disk || new Disk(4 * radius, 91, 180);
+      const canvas = figure.disk.paint(curve.dome, scale, value.quantity === 2);
       const inside = drawing.add("foreignObject", { x: middle - radius, y: middle - radius, width: 2 * radius, height: 2 * radius });
       inside.append(canvas);
       drawing.add("circle", { cx: middle, cy: middle, r: radius, class: "frame" });
@@ -297,8 +301,13 @@
       element.replaceChildren(this.picture, form, this.numbers, this.message, caption);
       element.setAttribute("aria-label", `Live figure: ${figure.title}`);
       element.hidden = false;
+      this.narrow = element.clientWidth < 520;  // asked at a change alone, since it lays out the whole page
       this.reset();
-      new ResizeObserver(() => this.update()).observe(element);
+      new ResizeObserver(([{ contentRect }]) => {
+        if (this.narrow === contentRect.width < 490) return;
+        this.narrow = !this.narrow;
+        this.update();
+      }).observe(element);
     }
     // a slider or a choice, with its label and its value
     control(control) {
@@ -330,7 +339,7 @@
       });
       this.say(answer.numbers);
       const value = Object.fromEntries(this.controls.map(({ control }, i) => [control.name, values[i]]));
-      this.picture.replaceChildren(...[draw[this.figure.name](answer, value, this.element.clientWidth < 520)].flat());
+      this.picture.replaceChildren(...[draw[this.figure.name](answer, value, this.narrow, this)].flat());
       this.picture.setAttribute("aria-label", `${this.figure.shows} Now ` +
         this.controls.map(({ control, input, output }) => `${control.label} ${control.choices[input.value] || output.textContent}`).join(", ") + ".");
       this.element.dataset.milliseconds = (performance.now() - began).toFixed(2);

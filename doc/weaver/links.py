@@ -3,7 +3,7 @@
 
     links.py DIR
 
-Reads all pages of DIR. It fails on a link to a page or a place that does not
+Reads all pages in DIR and below. It fails on a link to a page or a place that does not
 exist, a picture or font that is not there, a name given to two places of a
 page, a picture without words, anything loaded from elsewhere (links one may
 follow are allowed), scripts other than those of the search and of the live
@@ -29,8 +29,8 @@ PARSER = lxml.html.HTMLParser(encoding="utf-8")
 class Page:
     """What one page defines and what it needs: (line, kind, address)."""
 
-    def __init__(self, path: str) -> None:
-        self.path = path
+    def __init__(self, path: str, name: str) -> None:
+        self.path, self.name = path, name  # from here, and from the folder
         self.places: set[str] = set()
         self.needs: list[tuple[int, str, str]] = []
         self.problems: list[tuple[int, str]] = []
@@ -73,8 +73,8 @@ def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, a
     parts = urllib.parse.urlsplit(address)
     if parts.scheme or parts.netloc:
         return "is loaded from elsewhere" if kind == "load" else ""
-    name = urllib.parse.unquote(parts.path) or os.path.basename(page.path)
-    if os.path.normpath(name) not in files:
+    name = os.path.normpath(os.path.join(os.path.dirname(page.name), urllib.parse.unquote(parts.path))) if parts.path else page.name
+    if name not in files:
         return "does not exist"
     place = urllib.parse.unquote(parts.fragment)
     if place and (name not in pages or place not in pages[name].places):
@@ -84,7 +84,8 @@ def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, a
 
 def check(folder: str) -> list[str]:
     """All problems as sentences."""
-    pages = {os.path.basename(path): Page(path) for path in sorted(glob.glob(os.path.join(folder, "*.html")))}
+    paths = sorted(glob.glob(os.path.join(folder, "**", "*.html"), recursive=True))
+    pages = {name: Page(path, name) for path in paths for name in [os.path.relpath(path, folder)]}
     files = {os.path.relpath(os.path.join(below, name), folder) for below, _, names in os.walk(folder) for name in names}
     problems = [] if "index.html" in pages else [f"{folder}: has no index.html"]
     for page in pages.values():
