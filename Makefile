@@ -21,32 +21,41 @@ TEST    := python3-gdal python3-spectral python3-pytest python3-netcdf4 python3-
 MPI     := libopenmpi-dev
 # the tests look at every page in it; where it cannot be had they say so
 BROWSER := chromium
+# what compiles the live figures of the book; without it the static figures stay
+LIVE    := emscripten
 
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all prose test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
-.PHONY: need-mpi need-program need-book need-test need-browser need-press need-paper
+.PHONY: all prose test book pdf site reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
+.PHONY: need-mpi need-program need-book need-test need-browser need-live look-live need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
-all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the book, print the verdict
+all: need-book $(BUILD)/CMakeCache.txt look-live ## build, reproduce the thesis, weave the book, print the verdict
 	@cmake --build $(BUILD) -j $(JOBS) --target everything
 	@cat $(BUILD)/report/summary.txt
+	@command -v em++ >/dev/null || echo "The book's figures do not move: install $(LIVE) and run make again."
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-test need-browser need-press $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
-	@cmake --build $(BUILD) -j $(JOBS) --target all everything $$(command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
+test: need-test need-browser need-live need-press $(BUILD)/CMakeCache.txt look-live ## build and run all tests, the weaver's and the book's as well
+	@cmake --build $(BUILD) -j $(JOBS) --target all everything $(PRESS)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
-book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
+book: need-book $(BUILD)/CMakeCache.txt look-live ## weave the book (HTML)
 	@cmake --build $(BUILD) -j $(JOBS) --target book
 	@echo "The book: $(BUILD)/book/index.html"
 
-pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (PDF)
+pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (two PDFs)
 	@cmake --build $(BUILD) -j $(JOBS) --target pdf
-	@echo "The book: $(BUILD)/malus.pdf"
+	@echo "The book: $(BUILD)/malus-1.pdf, $(BUILD)/malus-2.pdf"
+
+PRESS = $(shell command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
+site: need-book $(BUILD)/CMakeCache.txt ## all that can be read, for a static host: book, report, PDFs if TeX is there, packages that were made
+	@cmake --build $(BUILD) -j $(JOBS) --target book reproduce $(PRESS)
+	@cmake --build $(BUILD) --target site
+	@echo "The site: $(BUILD)/site/index.html"
 
 reproduce: need-program $(BUILD)/CMakeCache.txt ## reproduce the thesis, without the book
 	@cmake --build $(BUILD) -j $(JOBS) --target reproduce
@@ -114,8 +123,9 @@ lint: ## check types, names and style of the Python (module, weaver, tests, scen
 	@pycodestyle --config doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pylint --rcfile=doc/weaver/setup.cfg --score=no $(shell git ls-files '*.py')
 
-dist: need-program $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ inside
-	@cmake --build $(BUILD) -j $(JOBS) --target dist
+# SITE=no: without what there is to read, as pip wants it
+dist: $(if $(filter no,$(SITE)),need-program,site) $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ and the site inside (SITE=no: the sources alone)
+	@SITE=$(if $(filter no,$(SITE)),,$(CURDIR)/$(BUILD)) cmake --build $(BUILD) -j $(JOBS) --target dist
 
 # what clang++ needs besides for its sanitizers
 CLANG := clang libclang-rt-14-dev
@@ -209,6 +219,13 @@ need-test:
 
 need-browser:
 	@$(NEED) $(BROWSER) || echo "The book's pages are not looked at in a browser."
+
+need-live:
+	@$(NEED) $(LIVE) || echo "The book's figures do not move."
+
+# (a build that was configured without it looks again)
+look-live:
+	@! command -v em++ >/dev/null || ! grep -q 'MALUS_EMSCRIPTEN:.*NOTFOUND' $(BUILD)/CMakeCache.txt || cmake $(BUILD) >/dev/null
 
 need-press:
 	@$(NEED) $(PAPER) || echo "The book is not printed, and so what LaTeX says of it is not heard."

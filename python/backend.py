@@ -129,9 +129,9 @@ def build_wheel(wheel_directory: str, config_settings: object = None, metadata_d
 
 
 def build_sdist(sdist_directory: str, config_settings: object = None) -> str:
-    """PEP 517's: the source archive that make dist writes."""
+    """PEP 517's: the source archive that make dist writes, without the site."""
     del config_settings
-    subprocess.run(["make", "-C", str(TOP), "NEED=true", "dist"], check=True)
+    subprocess.run(["make", "-C", str(TOP), "NEED=true", "SITE=no", "dist"], check=True)
     name = f"malus-{version()}.tar.gz"
     shutil.copy(TOP / "dist" / name, os.path.join(sdist_directory, name))
     return name

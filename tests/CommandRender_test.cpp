@@ -59,7 +59,7 @@ struct Workplace {
 };
 
 /// Starts a render in one thread, waits until some tiles are in its journal, sends a signal; returns waitpid's status.
-int interrupt(const Workplace& place, int signal) {
+int interrupt(const Workplace& place, int signal, const std::string& picture = "s") {
   const pid_t child = ::fork();
   if (child == 0) {
     if (::chdir(place.scratch.path.c_str()) != 0) ::_exit(3);
@@ -69,7 +69,7 @@ int interrupt(const Workplace& place, int signal) {
     ::_exit(3);
   }
   const auto tiles = [&] {
-    const std::string journal = place.file("b/s.truth.img.tiles");
+    const std::string journal = place.file("b/" + picture + ".truth.img.tiles");
     return std::count(journal.begin(), journal.end(), '\n');
   };
   int status = 0;
@@ -154,6 +154,46 @@ TEST(CommandRenderIdentity, CtrlCSaysHowToGoOnAndTheRestGivesTheSameBits) {
       << said;
   ASSERT_EQ(place.render("--out b --resume").code, 0);
   EXPECT_EQ(place.file("a/s.img"), place.file("b/s.img"));
+}
+
+// A bar that drives through the second picture: killed there, resumed, in parts, by other threads.
+TEST(MovingThingsInvariant, FramesAreTheSameBitsForThreadsPartsAndResumes) {
+  json scene = smallScene(120, 30);
+  json bar = scene["geometry"][0];
+  bar["facet_prefix"] = "bus.", bar["shared"] = true, bar["path"] = "bus.csv";
+  scene["geometry"].push_back(bar);
+  const auto poses = [](double second_s) {
+    json pose{{"position_m", {0, 0, 15}}, {"look_at_m", {0, 0, 0}}, {"up", {0, 1, 0}}};
+    json later = pose;
+    pose["time_s"] = 0, later["time_s"] = second_s;
+    return json{{"poses", {pose, later}}};
+  };
+  scene["platform"] = poses(1);
+  const Workplace place(scene);
+  const std::string path = "time_s,x_m,y_m,z_m,heading_deg\n0,4,-3,0,0\n2,4,3,0,90\n";
+  put(place.scratch / "bus.csv", path);
+  ASSERT_EQ(place.render("--threads 1 --out a").code, 0);
+  ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL, "s.0001")));
+  put(place.scratch / "bus.csv", path + "3,5,3,0,90\n");
+  EXPECT_EQ(place.render("--out b --resume").code, 2) << "along another path";
+  put(place.scratch / "bus.csv", path);
+  ASSERT_EQ(place.render("--out b --resume --threads 3").code, 0);
+  for (const char* part : {"0,0,37,113", "37,0,120,80", "37,80,120,113"})
+    ASSERT_EQ(place.render(std::string("--out c --part ") + part).code, 0);
+  ASSERT_EQ(malusIn(place.scratch.path, "merge c").code, 0);
+  for (const char* name :
+       {"s.0000.img", "s.0000.truth.img", "s.0001.img", "s.0001.truth.img"}) {
+    const std::string whole = place.file(std::string("a/") + name);
+    ASSERT_FALSE(whole.empty());
+    EXPECT_EQ(whole, place.file(std::string("b/") + name)) << name;
+    EXPECT_EQ(whole, place.file(std::string("c/") + name)) << name;
+  }
+  EXPECT_NE(place.file("a/s.0000.truth.img"), place.file("a/s.0001.truth.img"));  // it moved
+  scene["platform"] = poses(1.1);                                                 // control
+  put(place.scratch / "s.json", scene.dump(1));
+  ASSERT_EQ(place.render("--out d").code, 0);
+  EXPECT_EQ(place.file("a/s.0000.img"), place.file("d/s.0000.img"));
+  EXPECT_NE(place.file("a/s.0001.img"), place.file("d/s.0001.img"));
 }
 
 TEST(CommandRenderIdentity, AResumeUnderAnotherSeedIsRefused) {

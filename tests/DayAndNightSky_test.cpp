@@ -187,7 +187,7 @@ TEST(DayAndNightSkyRefusal, SaysWhatIsWrong) {
   has(sky,
       "sky.glow_optical_depth = 0.4: at 450 nm stands beside scattered light: their sum "
       "would neglect up to 6");
-  has(sky, "% of the sky; give 0 in this band, and the gas to layers");
+  has(sky, "% of the sky; give 0 in this band, and the gas to layers; or less aerosol there");
   sky = dayAndNight(), sky["glow_atmosphere"] = "us-standard";
   has(sky, "give glow_temperature_K or glow_atmosphere");
   sky = dayAndNight(), sky.erase("glow_optical_depth");

@@ -249,7 +249,7 @@ TEST(NoticesIdentity, NormalsThatAreNotUsedAreReported) {
   };
   const auto smooth = mesh("vn 0 0 2\nvn 0.3 0 1\nvn 0 0.3 1\nf 1//1 2//2 -1//-1\n");
   ASSERT_EQ(smooth.size(), 1u);
-  expectIn("tent.obj: 2 corners have a normal (vn) other than their facet's", smooth[0]);
+  expectIn("tent.obj: 2 corners have a normal other than their facet's", smooth[0]);
   EXPECT_TRUE(mesh("vn 0 0 2\nf 1//1 2//1 3//1\n").empty());
   EXPECT_TRUE(mesh("vn 0.3 0 1\nf 1 2 3\n").empty()) << "named by no corner";
 }

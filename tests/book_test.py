@@ -212,6 +212,16 @@ class InABrowser(unittest.TestCase):
             self.assertIn(f'id="{anchor}"', read(os.path.join(BOOK, page)), address)
         self.assertEqual(self.found("qwertyuiop"), [])
 
+    def test_search_knows_stems_spellings_symbols_and_messages(self) -> None:
+        for one, other in (("polarised+light", "polarized+light"), ("roughness", "rough"), ("the+colour+of+metres", "color+meter")):
+            with self.subTest(one):
+                self.assertEqual(set(self.found(one)) & set(self.found(other)[:5]), set(self.found(other)[:5]))
+        self.assertEqual(self.found("%CF%83")[0].split("#")[0], "notation.html")  # the letter sigma
+        self.assertTrue(any(address.startswith("files-SceneChecks.html#chunk-") for address in self.found("camera+is+below+the+ground")))
+        self.assertTrue(self.found("torrance+sparrow")[0].startswith("surface-"), "sections come before identifiers")
+        self.browser.open(f"file://{BOOK}/search.html?q=shadowing")
+        self.assertIn("shadow", self.browser.value('document.querySelector("#results .snippet mark").textContent').lower())
+
     def test_negative_controls(self) -> None:
         good = read(os.path.join(BOOK, "search.html"))
         with tempfile.TemporaryDirectory() as folder:

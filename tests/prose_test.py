@@ -79,6 +79,13 @@ class Prose(unittest.TestCase):
                                     "\\begin{equation}\nstand\n\\end{equation}\n"
                                     "\\label{eq:told} no % stand\n<<A>>=\nask(stand);\n@ %def ask\n"), [])
 
+    def test_a_sentence_ends_with_its_formula_and_not_within_an_abbreviation(self) -> None:
+        formula = "\\begin{equation}\n  a = b END\n  \\label{eq:a}\n\\end{equation}\n"
+        text = "\\chapter{Radiance}\n" + "It is so " * 8 + "\n" + formula + "What" + " it is" * 12 + " and so on.\n"
+        self.assertEqual(self.found(text.replace("END", ".")), [("what", "prose", 7)])
+        self.assertEqual(self.found(text.replace("END", ",")), [("long", "prose", 2)])
+        self.assertEqual(self.found("\\chapter{Radiance}\nIt is on top. Where is p. X here?\n"), [("question", "prose", 2)])
+
     def test_a_title_has_a_term_of_the_field(self) -> None:
         self.assertEqual(self.found("\\chapter{Things by their names}\n"), [("title", "prose", 1)])
         self.assertEqual(self.found("\\chapter{Fresnel reflection}\n"), [])

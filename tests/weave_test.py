@@ -24,6 +24,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 WEAVER = os.path.join(ROOT, "doc", "weaver")
 sys.path.insert(0, WEAVER)
 import book  # noqa: E402
+import contents  # noqa: E402
+import finder  # noqa: E402
 import latexml  # noqa: E402
 import listing  # noqa: E402
 import names  # noqa: E402
@@ -73,15 +75,53 @@ int main() { return reflect_it(2) > 0; }  // reflect_it is not linked here
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480"><rect width="640" height="480"/></svg>'
 
 
+CONTENTS = """[book]
+title = malus
+subtitle = A trial
+after = After <cite>A thesis</cite>
+begin = Begin with
+path = One chapter
+says = For a first reader.
+interface = The rest is on the site.
+picture = none
+caption = none
+[volume 1]
+title = What is needed
+about = The first.
+[volume 2]
+title = What is more
+about = The second.
+[path]
+chapters =
+  light/first what a surface does
+[light]
+volume = 1
+title = Light
+about = Light, and what it does.
+rest = light
+[surface]
+volume = 2
+title = Surface
+about = Where it is reflected.
+chapters =
+  surface/second How the reflectance is used.
+"""
+
+
 class Workshop(unittest.TestCase):
     """A scratch directory with a two-chapter book; weave() runs the weaver as CMake does."""
 
     shared: str
+    theme: str
 
     @classmethod
     def setUpClass(cls) -> None:
         cls.shared = tempfile.mkdtemp()  # LaTeXML's work is kept from test to test, as it is from build to build
         cls.addClassCleanup(shutil.rmtree, cls.shared)
+        cls.theme = os.path.join(cls.shared, "theme")
+        shutil.copytree(os.path.join(ROOT, "doc", "book"), cls.theme)
+        with open(os.path.join(cls.theme, "book.ini"), "w", encoding="utf-8") as file:
+            file.write(CONTENTS)
 
     def setUp(self) -> None:
         self.dir = tempfile.mkdtemp()
@@ -101,12 +141,12 @@ class Workshop(unittest.TestCase):
         with open(os.path.join(self.dir, "book", name), encoding="utf-8") as file:
             return file.read()
 
-    def weave(self) -> tuple[int, str]:
+    def weave(self, *more: str) -> tuple[int, str]:
         """(exit code, complaints)"""
         done = subprocess.run(
             [os.path.join(WEAVER, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
-             os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/surface/second.nw"],
+             self.theme, "--report", "report", "--bibliography",
+             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", *more, "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -114,7 +154,7 @@ class Workshop(unittest.TestCase):
         """(exit code, complaints) of the second renderer"""
         done = subprocess.run(
             [os.path.join(WEAVER, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
-             os.path.join(ROOT, "doc", "book"), "--report", "report", "--bibliography",
+             self.theme, "--report", "report", "--bibliography",
              os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
@@ -141,17 +181,24 @@ class WovenBook(Workshop):
         self.assertRegex(self.second, r'\(<a href="light-first.html#eq:first:rs"[^>]*>3.50</a>\)')
 
     def test_chapters_sections_and_figures_are_numbered_through_the_book(self) -> None:
-        self.assertRegex(self.first, r'chapter <a href="surface-second.html#ch:second"[^>]*>2</a>'.replace(" ", "[ \u00a0]", 1))
+        self.assertRegex(self.first, r'and <a href="surface-second.html#ch:second" title="chapter 2" [^>]*lit-title[^>]*>Use</a>\.')
         self.assertIn('<section id="the-code"', self.first)
         self.assertRegex(self.second, r'<a href="light-first.html#fig:F3.9"[^>]*>1.1</a>')
 
-    def test_a_part_has_a_page_with_the_first_sentence_of_each_chapter_and_chapters_lead_up_to_it(self) -> None:
+    def test_a_part_has_a_page_with_a_sentence_on_each_chapter_and_chapters_lead_up_to_it(self) -> None:
         part = self.get("light.html")
         self.assertIn("<h1>Light</h1>", part)
-        self.assertRegex(part, r'(?s)<a href="light-first.html">Reflection</a><p>The reflectance is computed by .*chapter.2\.</p></li>')
+        self.assertRegex(part, r'(?s)<a href="light-first.html">Reflection</a><p>The reflectance is computed by .*<em>Use</em>\.</p></li>')
+        self.assertIn('<a href="surface-second.html">Use</a><p>How the reflectance is used.</p></li>', self.get("surface.html"))
         self.assertIn('<a rel="up" href="light.html">Light</a>', self.first)
         self.assertIn('<a rel="prev" href="light.html">Light</a>', self.first)
         self.assertIn('<a rel="next" href="surface.html">Surface</a>', self.first)
+
+    def test_the_title_page_begins_with_the_path_of_a_first_reader_and_has_both_volumes(self) -> None:
+        title = self.get("index.html")
+        self.assertIn('<li><a href="light-first.html">Reflection</a>: what a surface does.</li>', title)
+        self.assertLess(title.index("Begin with Reflection"), title.index("Volume 1: What is needed"))
+        self.assertLess(title.index("Volume 1: What is needed"), title.index("Volume 2: What is more"))
 
     def test_a_formula_keeps_its_brackets_and_its_comma(self) -> None:
         self.assertRegex(self.first, r'(?s)<span class="glued"><math[^>]*alttext="n=2".*?</math>\.</span>')
@@ -229,6 +276,22 @@ class WovenBook(Workshop):
         pages = "".join(map(self.get, names))
         self.assertEqual([name for name in names if "<script" in self.get(name)], ["search.html"])
         self.assertNotRegex(pages, r'src="https?:')
+
+    def test_a_live_figure_needs_its_program(self) -> None:
+        """Without the program the page has neither figure nor script; with it both, hidden until a script runs."""
+        text = FIRST.replace("\\end{figure}\n", "\\end{figure}\n\\livefigure{fresnel}\n", 1)
+        self.assertIn("livefigure", text)
+        self.put("nw/light/first.nw", text)
+        self.assertEqual(self.weave(), (0, ""))
+        self.assertNotRegex(self.get("light-first.html"), "livefigure|lit-live|data-live|<script")
+        self.assertEqual(self.check_links(), (0, ""))
+        self.put("program.js", "")
+        self.assertEqual(self.weave("--live", "program.js"), (0, ""))
+        page = self.get("light-first.html")
+        self.assertIn('<figure class="live" data-live="fresnel" hidden>', page)
+        self.assertEqual(re.findall(r'<script defer src="([^"]*)">', page), ["live-program.js", "live.js"])
+        self.assertNotIn("<script", self.get("surface-second.html"))
+        self.assertEqual(self.check_links(), (0, ""))
 
     def test_a_page_that_no_longer_belongs_to_the_book_is_removed(self) -> None:
         self.put("book/old.html", "old")
@@ -309,6 +372,76 @@ class SpoiledBook(Workshop):
 
     def test_script(self) -> None:
         self.spoiled("index.html", "</main>", "<script></script></main>", "a script")
+        self.spoiled("light-first.html", "</main>", '<script src="live.js"></script></main>', "a script")
+
+
+class Site(Workshop):
+    """What make site collects, and what the archive of make dist has."""
+
+    REPORT = '<!DOCTYPE html><html lang="en"><head><title>r</title></head><body><h1>r</h1><img src="F3.9/fresnel.svg" alt="a"></body></html>'
+
+    def collect(self) -> tuple[int, str]:
+        """(exit code, complaints)"""
+        self.assertEqual(self.weave(), (0, ""))
+        self.put("report/report.html", self.REPORT)
+        self.put("malus-1.pdf", "%PDF-")
+        self.put("deb/malus_1_amd64.deb", "!<arch>")
+        done = subprocess.run([os.path.join(WEAVER, "collect.py"), "--out", "site", "--book", "book", "--report", "report", "--paper",
+                               "malus-1.pdf", "malus-2.pdf", "--packages", "deb", "wheel"], cwd=self.dir, capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def test_all_is_there_and_linked_from_the_title_page(self) -> None:
+        self.assertEqual(self.collect(), (0, ""))
+        with open(os.path.join(self.dir, "site", "index.html"), encoding="utf-8") as file:
+            title = file.read()
+        for address in ("malus-1.pdf", "report/report.html", "packages/index.html"):
+            self.assertIn(f'href="{address}"', title)
+            self.assertTrue(os.path.exists(os.path.join(self.dir, "site", address)))
+        self.assertNotIn("malus-2.pdf", title)
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "site/report/values.tex")))
+        with open(os.path.join(self.dir, "site/packages/index.html"), encoding="utf-8") as file:
+            self.assertIn('<a href="malus_1_amd64.deb">', file.read())
+
+    def test_negative_control_a_picture_that_the_report_lacks(self) -> None:
+        self.REPORT = self.REPORT.replace("fresnel.svg", "lost.svg")  # pylint: disable=invalid-name
+        code, said = self.collect()
+        self.assertEqual(code, 1)
+        self.assertIn("site/report/report.html:1: F3.9/lost.svg does not exist", said)
+
+
+class Search(unittest.TestCase):
+    """What the search can find."""
+
+    BODY = """<section class="ltx_chapter" id="ch"><h1>Rough metal</h1><p>Many small facets.</p>
+<section class="ltx_section" id="one"><h2>Slopes</h2><p>The angle <math alttext="\\sigma_{i}"><mi>s</mi></math> counts.</p>
+<section class="ltx_paragraph" id="hand"><h3>By hand.</h3><p>Two steps.</p></section></section></section>"""
+
+    def index(self, name: str = "notation") -> dict[str, Any]:
+        """The index of one page with a chunk."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "code.nw")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write('Text.\n<<Complain>>=\nthrow Error("the camera is below the ground", "x");\n@\n')
+            chunks = noweb.read([path])[0].chunks
+        page = book.Page(name, "", "")
+        page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
+        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
+        return found
+
+    def test_sections_have_their_text_and_small_parts_belong_to_them(self) -> None:
+        index = self.index()
+        self.assertEqual(index["sections"], [[0, "ch", "Rough metal", 0], [0, "one", "Slopes", 0], [0, "chunk-complain", "Complain", 1]])
+        self.assertEqual(index["texts"][0], "Many small facets.")
+        self.assertEqual(index["texts"][1], "The angle counts. By hand. Two steps.")
+
+    def test_messages_of_the_program_are_found_and_greek_letters_in_the_notation(self) -> None:
+        index = self.index()
+        self.assertEqual(index["texts"][2], "the camera is below the ground")
+        self.assertEqual(index["words"]["camera"], "3")
+        self.assertEqual(index["words"]["sigma"], "2")
+        self.assertNotIn("sigma", self.index("other")["words"])
+        self.assertNotIn("the", index["words"])
 
 
 PAPER = {"lualatex": "texlive-luatex", "rsvg-convert": "librsvg2-bin", "kpsewhich": "texlive-binaries"}
@@ -331,17 +464,40 @@ class PrintedBook(Workshop):
         self.assertEqual(code, 1)
         for fragment in fragments:
             self.assertIn(fragment, complaint)
-        self.assertFalse(os.path.exists(os.path.join(self.dir, "book.pdf")), "a bad book was delivered")
+        self.assertFalse(os.path.exists(os.path.join(self.dir, "book-1.pdf")), "a bad book was delivered")
+
+    def get_work(self, name: str) -> str:
+        """A file that LuaLaTeX read or wrote."""
+        with open(os.path.join(self.shared, "pdf", name), encoding="utf-8") as file:
+            return file.read()
 
     def test_whole_book(self) -> None:
         self.assertEqual(self.weave_pdf(), (0, ""))
-        with open(os.path.join(self.dir, "book.pdf"), "rb") as file:
-            self.assertEqual(file.read(5), b"%PDF-")
-        with open(os.path.join(self.shared, "pdf", "malus.aux"), encoding="utf-8") as file:
-            aux = file.read()
-        self.assertIn(r"\newlabel{eq:first:rs}{{{3.50}}", aux)
-        self.assertRegex(aux, r"\\newlabel\{ch:second\}\{\{2\}")
-        self.assertEqual(len(re.findall(r"\\newlabel\{chunk:", aux)), 4)
+        for volume in (1, 2):
+            with open(os.path.join(self.dir, f"book-{volume}.pdf"), "rb") as file:
+                self.assertEqual(file.read(5), b"%PDF-")
+        first, second = (self.get_work(f"malus-{volume}.aux") for volume in (1, 2))
+        self.assertIn(r"\newlabel{eq:first:rs}{{{3.50}}", first)
+        self.assertRegex(second, r"\\newlabel\{ch:second\}\{\{2\}")
+        self.assertEqual([len(re.findall(r"\\newlabel\{chunk:", aux)) for aux in (first, second)], [2, 2])
+
+    def test_a_volume_refers_to_the_other_by_its_numbers(self) -> None:
+        self.assertEqual(self.weave_pdf(), (0, ""))
+        self.assertIn(r"volume~2, chapter~\litfar{ch:second}.", self.get_work("light-first.tex"))
+        self.assertIn(r"Volume~1, equation (\litfar{eq:first:rs}) again, and volume~1, figure~\litfar{fig:F3.9}.",
+                      self.get_work("surface-second.tex"))
+        self.assertIn(r"\litfardefine{ch:second}{2}{2}{chapter.2}{2}", self.get_work("far-1.tex"))
+        self.assertIn(r"\litfardefine{fig:F3.9}{1.1}", self.get_work("far-2.tex"))
+        self.assertRegex(self.get_work("identifiers.tex"), r"\\litidentifierentry\{reflect\\_it\}\{\\litpage\{1\}\{[^}]*\}\}")
+
+    def test_a_volume_that_is_too_long(self) -> None:
+        with open(os.path.join(self.theme, "book.ini"), "w", encoding="utf-8") as file:
+            file.write(CONTENTS.replace("about = The first.", "about = The first.\npages = 2"))
+        code, complaint = self.weave_pdf()
+        with open(os.path.join(self.theme, "book.ini"), "w", encoding="utf-8") as file:
+            file.write(CONTENTS)
+        self.assertEqual(code, 1)
+        self.assertRegex(complaint, "volume 1 has \\d+ pages, at most 2 are wanted")
 
     def test_line_that_sticks_out(self) -> None:
         self.fails("it is zero.", r"it is zero. \rule{20cm}{1pt}", "nw/light/first.nw:", "Overfull")
@@ -616,6 +772,34 @@ class Parts(unittest.TestCase):
 
     def test_slugs(self) -> None:
         self.assertEqual(latexml.slug("Add: the (two) Stokes_vectors!"), "add-the-two-stokes-vectors")
+
+
+class Places(unittest.TestCase):
+    """Where a chapter is: volumes, parts and their order."""
+
+    def contents(self, text: str) -> contents.Contents:
+        with tempfile.NamedTemporaryFile("w", suffix=".ini") as file:
+            file.write(text)
+            file.flush()
+            return contents.Contents(file.name)
+
+    def test_chapters_come_as_the_parts_name_them_and_new_ones_last_in_the_rest(self) -> None:
+        found = self.contents(CONTENTS + "  light/moved\n[files]\nvolume = 2\ntitle = F\nabout = A.\nrest = files\n")
+        paths = ["doc/back/open.tex", "nw/files/new.nw", "nw/light/moved.nw", "nw/surface/second.nw", "nw/light/first.nw", "doc/front/a.tex"]
+        self.assertEqual(found.ordered(paths), ["doc/front/a.tex", "nw/light/first.nw", "nw/surface/second.nw", "nw/light/moved.nw",
+                                                "nw/files/new.nw", "doc/back/open.tex"])
+
+    def test_negative_controls(self) -> None:
+        with self.assertRaisesRegex(Problem, "none takes the rest of air"):
+            self.contents(CONTENTS).ordered(["nw/air/Sun.nw"])
+        with self.assertRaisesRegex(Problem, "surface/second is in the parts surface and again"):
+            self.contents(CONTENTS + "[again]\nvolume = 2\ntitle = A\nabout = A.\nchapters = surface/second\n")
+
+    def test_every_chapter_that_the_book_names_is_there(self) -> None:
+        whole = contents.Contents(os.path.join(ROOT, "doc", "book", "book.ini"))
+        named = list(whole.homes) + [key for key, _ in whole.readers_path]
+        self.assertEqual([key for key in named if not os.path.exists(os.path.join(ROOT, "nw", key + ".nw"))
+                          and not os.path.exists(os.path.join(ROOT, "doc", "book", key + ".tex"))], [])
 
 
 class CheckTest(unittest.TestCase):

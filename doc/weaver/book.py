@@ -3,13 +3,13 @@
 Two renderers stand on this: weave.py makes the HTML, pdf.py the PDF.
 """
 import argparse
-import configparser
 import os
 import re
 import sys
 from collections.abc import Callable, Container
 from typing import Any
 
+import contents
 import latexml
 import names
 import noweb
@@ -31,6 +31,7 @@ class Page:
 
     def __init__(self, name: str, source: str, latex: str, chapter: int = 0) -> None:
         self.name, self.source, self.latex, self.chapter = name, source, latex, chapter
+        self.volume = 1
         self.file = name + ".html"
         self.title = self.body = ""
         self.sections: list[tuple[str, str]] = []  # (anchor, title)
@@ -153,22 +154,23 @@ class Links:
 
 # ---------------------------------------------------------------- the book
 class Part:
-    """A floor of the house: its folder, title, what it is about, and its pages."""
+    """A part of the book: its pages, and what contents.py reads of it."""
 
-    def __init__(self, folder: str, title: str, about: str) -> None:
-        self.folder, self.title, self.about = folder, title, about
+    def __init__(self, about: contents.Part) -> None:
+        self.name, self.title, self.about, self.volume, self.code = about.name, about.title, about.about, about.volume, about.code
         self.pages: list[Page] = []
-        self.page = Page(folder, "", "")  # what a renderer shows of the part itself
+        self.page = Page(self.name, "", "")  # what a renderer shows of the part itself
+        self.page.volume = self.volume
 
 
 class Book:
-    """All pages, in parts."""
+    """All pages, in parts of two volumes."""
 
     def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
-        self.about = configparser.ConfigParser()
-        self.about.read(os.path.join(options.book, "book.ini"), encoding="utf-8")
-        self.chapters = noweb.read(options.chapters)
+        self.contents = contents.Contents(os.path.join(options.book, "book.ini"))
+        self.about = self.contents.about
+        self.chapters = noweb.read(self.contents.ordered(options.chapters))
         read = {os.path.normpath(path) for path in options.chapters}  # a header may outlive its chapter
         public = names.public(options.headers) if options.headers else []
         self.names = [name for name in public if os.path.normpath(name.path) in read]
@@ -183,27 +185,46 @@ class Book:
         defined = {word for chapter in self.chapters for chunk in chapter.chunks for word, _ in chunk.defines}
         stop_if_any(names.check(self.names, defined))
         parts: dict[str, Part] = {}
-        number = 0  # the folder "back" holds what stands after the last part
+        number = 0
         for chapter in self.chapters:
-            folder = os.path.basename(os.path.dirname(chapter.path))
-            name = os.path.splitext(os.path.basename(chapter.path))[0]
+            key = contents.key_of(chapter.path)
             latex = chapter.latex()
             numbered = re.search(r"\\chapter\{", latex) is not None
             number += numbered
-            in_front, in_back = folder not in self.about, folder == "back"
-            page = Page(name if in_front else f"{folder}-{name}", chapter.path, latex, number if numbered else 0)
+            home = self.contents.home(key)
+            beside = key.startswith(("front/", "back/"))  # a page without a floor
+            page = Page(os.path.basename(key) if beside else key.replace("/", "-"), chapter.path, latex, number if numbered else 0)
             page.chunks = chapter.chunks
-            if in_back:
-                self.back.append(page)
-            elif in_front:
-                self.front.append(page)
+            if home:
+                if home.name not in parts:
+                    parts[home.name] = Part(home)
+                    self.parts.append(parts[home.name])
+                parts[home.name].pages.append(page)
+                page.volume = home.volume
             else:
-                if folder not in parts:
-                    about = self.about[folder]
-                    parts[folder] = Part(folder, about["title"], about["about"])
-                    self.parts.append(parts[folder])
-                parts[folder].pages.append(page)
+                (self.front if key.startswith("front/") else self.back).append(page)
             self.name_chunks(chapter, page)
+        for page in self.pages():
+            page.latex = page.latex.replace(r"\readerspath", self.readers_path_latex())
+
+    def readers_path(self) -> list[tuple[Page, str]]:
+        """The chapters for a first reader, each with what it is read for."""
+        homes = {contents.key_of(page.source): page for page in self.pages()}
+        return [(homes[key], why) for key, why in self.contents.readers_path if key in homes]
+
+    def readers_path_latex(self) -> str:
+        """The same as a list in one line, for the preface."""
+        items = []
+        for page, why in self.readers_path():
+            label = LABEL.search(page.latex)
+            if not label:
+                raise Problem(page.source, 0, "a chapter of the reader's path needs a label")
+            items.append(rf"\item {self.chapter_link(label[1], page)}: {why}.")
+        return rf"\begin{{enumerate}}{''.join(items)}\end{{enumerate}}" if items else ""
+
+    def chapter_link(self, label: str, page: Page) -> str:  # pylint: disable=unused-argument
+        """A link to a chapter that stands alone."""
+        return rf"Chapter~\ref{{{label}}}"
 
     def name_chunks(self, chapter: noweb.Chapter, page: Page) -> None:
         """A place on the page for each chunk; every chunk that is used must be there."""
@@ -239,6 +260,7 @@ def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
     arguments.add_argument("--drawn", default="", help="the folder of the figures that the build draws of the chapters")
+    arguments.add_argument("--live", default="", help="the program of the live figures; without it they are left out")
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
     arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")
     arguments.add_argument("chapters", nargs="+")

@@ -13,8 +13,8 @@
 import re
 import sys
 
-FLOORS = ["base", "light", "surface", "air", "scene", "render", "files", "app", "thesis", "python"]
-BESIDE = {"python": "files"}  # a floor that stands on a lower one than its neighbour: the highest that it may include
+FLOORS = ["base", "light", "surface", "air", "scene", "render", "files", "app", "thesis", "python", "live"]
+BESIDE = {"python": "files", "live": "render"}  # floors on a lower one than their neighbour: the highest that each may include
 THESIS = {"CDPolarimetricMath", "CDVector", "CDStokesVector", "CDMuellerMatrix", "CDSpectralVector",
           "CDSpectralLocation", "CDSpectralPoint", "CDSpectralUnits", "CDBRDFModel"}
 BEGINS = re.compile(r"^<<(.*)>>=\s*$")

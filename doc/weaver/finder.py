@@ -1,4 +1,7 @@
-"""The index behind the book's search page: for each word the sections that have it. It is a file, not a server."""
+"""The index behind the book's search page: for each word the sections that have it, and their text. Files, not a server.
+
+Stems and spellings are the business of search.js: the index has the words as they are written.
+"""
 import json
 import re
 from collections.abc import Iterable, Iterator
@@ -7,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import lxml.html
 
 import listing
+import noweb
 
 if TYPE_CHECKING:
     from book import Page
@@ -16,19 +20,24 @@ even every few for from get had has have her here him his how into its itself ju
 other our out over own same see she should since some such than that the their them then there these they this those through
 too under until upon used uses was way were what when where which while who whose why will with without would yet you""".split())
 HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
+DIVISIONS = ("ltx_chapter", "ltx_section", "ltx_subsection")  # what is found; smaller ones belong to these
+APART = HEADINGS + ("p", "li", "dt", "dd", "td", "th", "pre")  # no word goes on from one to the next
 UNREAD_TAGS = ("math", "svg")
-UNREAD_CLASSES = ("chunk-foot", "permalink", "ltx_tag")
+UNREAD_CLASSES = ("chunk-foot", "chunk-number", "defines", "permalink", "ltx_tag", "source", "folded")
 WORD = re.compile(r"\w+")
+GREEK = re.compile(r"\\((?:alpha|beta|gamma|delta|epsilon|varepsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi|varphi"
+                   r"|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega))(?![a-zA-Z])")
+STRING = re.compile(r'"((?:\\.|[^"\\\n])*)"')
 DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 
 
 class Section:
     """What is read in one section: its pieces of text, and those of its heading."""
 
-    def __init__(self, anchor: str) -> None:
-        self.anchor = anchor
+    def __init__(self, anchor: str, title: str = "") -> None:
+        self.anchor, self.title = anchor, title
         self.pieces: list[str] = []
-        self.title = ""
+        self.symbols: list[str] = []  # names of Greek letters in its formulas
 
     @property
     def text(self) -> str:
@@ -79,20 +88,25 @@ def fill(sections: list[Section], element: Any) -> None:
     if not isinstance(element.tag, str):
         return
     if is_unread(element):
+        if element.tag == "math":
+            sections[-1].symbols += [name.lower() for name in GREEK.findall(element.get("alttext", ""))]
         sections[-1].pieces.append(" ")
         return
-    if element.tag == "section" and element.get("id"):
+    if element.tag == "section" and element.get("id") and any(name in DIVISIONS for name in element.get("class", "").split()):
         sections.append(Section(element.get("id")))
     if element.tag in HEADINGS and not sections[-1].title:
         sections[-1].title = in_one_line("".join(read_aloud(element)))
-    sections[-1].pieces.append(element.text or "")
+        return
+    apart = " " if element.tag in APART else ""
+    sections[-1].pieces.append(apart + (element.text or ""))
     for child in element:
         fill(sections, child)
         sections[-1].pieces.append(child.tail or "")
+    sections[-1].pieces.append(apart)
 
 
 def sections_of(page: "Page") -> list[Section]:
-    """The sections of a page; what stands above the first belongs to it."""
+    """The sections of a page; what is above the first belongs to it."""
     sections = [Section("")]
     fill(sections, lxml.html.fragment_fromstring(page.body, create_parent="div"))
     if len(sections) > 1:
@@ -104,17 +118,33 @@ def sections_of(page: "Page") -> list[Section]:
     return sections
 
 
-def index(pages: list["Page"], identifiers: Iterable[listing.Identifier]) -> str:
+def messages_of(page: "Page", anchors: dict[str, tuple[str, str]]) -> Iterator[Section]:
+    """The messages that a chapter's code may print, a section for each chunk with some: literals of several words."""
+    for chunk in page.chunks:
+        texts = [text for text in STRING.findall(chunk.text) if text.count(" ") > 1]
+        if texts:
+            section = Section(anchors[chunk.label][1], noweb.plain(chunk.name))
+            section.pieces = [" \u2026 ".join(texts)]
+            yield section
+
+
+def index(pages: list["Page"], identifiers: Iterable[listing.Identifier], anchors: dict[str, tuple[str, str]]) -> str:
     """A script that defines INDEX, as search.js expects it."""
-    sections: list[tuple[int, str, str]] = []
+    sections: list[tuple[int, str, str, int]] = []
+    texts: list[str] = []
     words: dict[str, list[int]] = {}
     for number, page in enumerate(pages):
-        for section in sections_of(page):
-            for word in set(WORD.findall(section.text.lower())):
-                if len(word) > 2 and not word[0].isdigit() and word not in COMMON:
+        found = [(section, 0) for section in sections_of(page)] + [(section, 1) for section in messages_of(page, anchors)]
+        for section, is_message in found:
+            every = set(WORD.findall((section.text + " " + section.title).lower()))
+            if page.name == "notation":
+                every |= set(section.symbols)
+            for word in every:
+                if len(word) > 1 and not word[0].isdigit() and word not in COMMON:
                     words.setdefault(word, []).append(len(sections))
-            sections.append((number, section.anchor, section.title))
+            sections.append((number, section.anchor, section.title, is_message))
+            texts.append(section.text)
     packed = {word: " ".join(base36(b - a) for a, b in zip([-1] + found, found)) for word, found in sorted(words.items())}
-    data = {"pages": [(page.file, text_of(page.title)) for page in pages], "sections": sections, "words": packed,
-            "identifiers": [(word, listing.anchor_of(word)) for word, *_ in identifiers]}
+    data = {"pages": [(page.file, text_of(page.title)) for page in pages], "sections": sections, "words": packed, "texts": texts,
+            "identifiers": [(word, listing.anchor_of(word)) for word, *_ in identifiers], "common": sorted(COMMON)}
     return "const INDEX = " + json.dumps(data, ensure_ascii=False, separators=(",", ":")) + ";\n"

@@ -17,7 +17,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import lxml.html
 from lxml import etree
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from book import Page
 
 Element = Any                       # lxml brings no types
-Address = tuple[str, str, str]      # of a link: where it leads, its text, its title
-Parts = tuple[str, str, str]        # of a label: anchor, number, kind
+Parts = tuple[str, str, str, str]   # of a label: anchor, number, kind, title of a section without formulas
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DRIVER = os.path.join(HERE, "latexml.pl")
@@ -40,6 +39,15 @@ BEGIN = r"\documentclass{book}\usepackage{malus}\begin{document}"  # on the firs
 XML, HTML = etree.XMLParser(remove_comments=True, remove_pis=True), lxml.html.HTMLParser(encoding="utf-8")
 MESSAGE = re.compile(r"^(Warning|Error|Fatal):(.*)")
 PLACE = re.compile(r"\.tex; (?:from )?line (\d+)")
+
+
+class Address(NamedTuple):
+    """Of a link: where it leads, its text, what a browser says of it, and whether the text is a title."""
+
+    href: str
+    text: str
+    about: str
+    is_title: bool
 
 
 def ours(name: str) -> str:
@@ -187,6 +195,14 @@ def words(title: Element | None) -> str:
     return "".join(parts)
 
 
+def title_of(element: Element) -> str:
+    """The title of a section; nothing if it has a formula, which a link could not show."""
+    title = element.find(ours("title"))
+    if title is None or title.find(f".//{ours('Math')}") is not None:
+        return ""
+    return " ".join(words(title).split())
+
+
 def give_addresses(root: Element) -> dict[str, Parts]:
     """Names what can be linked to in this chapter; returns {label: (anchor, number, kind)}."""
     labels: dict[str, Parts] = {}
@@ -207,27 +223,40 @@ def give_addresses(root: Element) -> dict[str, Parts]:
         taken.add(anchor)
         element.set("fragid", anchor)
         for name in names:
-            labels[name] = (anchor, number_of(element), kind)
+            labels[name] = (anchor, number_of(element), kind, title_of(element) if kind in SECTIONS else "")
     return labels
 
 
-def link(element: Element, href: str, text: str, title: str) -> None:
-    """Makes an element a link."""
+COUNTED = re.compile(r"(^|[\s(])(?:[Cc]hapter|[Ss]ection)[\s\u00a0]+$")  # before a number
+
+
+def link(element: Element, target: Address) -> None:
+    """Makes an element a link. The title of a chapter takes the place of `chapter 31`, as the title of a work does."""
+    if target.is_title:
+        before = element.getprevious()
+        text = (before.tail if before is not None else element.getparent().text) or ""
+        text = COUNTED.sub(r"\1", text)
+        if before is not None:
+            before.tail = text
+        else:
+            element.getparent().text = text
     element.tag = ours("ref")
     element.clear(keep_tail=True)
-    element.text = text
-    element.set("href", href)
-    if title:
-        element.set("title", title)
+    element.text = target.text
+    element.set("href", target.href)
+    if target.is_title:
+        element.set("class", "lit-title")
+    if target.about:
+        element.set("title", target.about)
 
 
 def resolve(root: Element, address: Callable[[str], Address], citation: Callable[[str], Address]) -> str:
-    """Replaces references by links. address(label) and citation(key) give (href, text, title); returns all of them."""
+    """Replaces references by links. address(label) and citation(key) say where; returns all of them."""
     used = []
 
     def link_to(element: Element, target: Address) -> None:
-        used.append("\t".join(target))
-        link(element, *target)
+        used.append("\t".join(map(str, target)))
+        link(element, target)
 
     for element in list(root.iter(ours("ref"))):
         if name := element.get("labelref"):

@@ -3,11 +3,12 @@
 
     links.py DIR
 
-Reads all pages of DIR. It fails on a link to a page or a place that does not
+Reads all pages in DIR and below. It fails on a link to a page or a place that does not
 exist, a picture or font that is not there, a name given to two places of a
 page, a picture without words, anything loaded from elsewhere (links one may
-follow are allowed), scripts on any page but the search, and what LaTeXML or the
-weaver leave behind when they could not do their work.
+follow are allowed), scripts other than those of the search and of the live
+figures, and what LaTeXML or the weaver leave behind when they could not do
+their work.
 """
 import glob
 import os
@@ -18,8 +19,9 @@ from typing import Any
 
 import lxml.html
 
-LEFT_BEHIND = re.compile(r"ltx_ERROR|ltx_missing|lit-chunk|lit-figure|^chunk:|^LABEL:")
-SCRIPTED = "search.html"  # the only page that may load scripts; it has none of its own
+LEFT_BEHIND = re.compile(r"ltx_ERROR|ltx_missing|lit-chunk|lit-figure|lit-live|^chunk:|^LABEL:")
+SEARCH = "search.html"  # may load scripts; no page has one in it
+LIVE = ("live-program.js", "live.js")  # may be loaded by a page with live figures
 LOADS = {"img": "src", "link": "href", "script": "src", "iframe": "src", "source": "src"}
 PARSER = lxml.html.HTMLParser(encoding="utf-8")
 
@@ -27,11 +29,12 @@ PARSER = lxml.html.HTMLParser(encoding="utf-8")
 class Page:
     """What one page defines and what it needs: (line, kind, address)."""
 
-    def __init__(self, path: str) -> None:
-        self.path = path
+    def __init__(self, path: str, name: str) -> None:
+        self.path, self.name = path, name  # from here, and from the folder
         self.places: set[str] = set()
         self.needs: list[tuple[int, str, str]] = []
         self.problems: list[tuple[int, str]] = []
+        self.live = False  # whether it has a figure that moves
         for element in lxml.html.parse(path, PARSER).getroot().iter():
             if isinstance(element.tag, str):
                 self.read(element)
@@ -48,7 +51,8 @@ class Page:
         for name, value in attributes.items():
             if name != "alttext" and (trace := LEFT_BEHIND.search(value)):
                 self.problems.append((line, f"{trace[0]} was left behind"))
-        if tag == "script" and (os.path.basename(self.path) != SCRIPTED or not attributes.get("src")):
+        self.live = self.live or "data-live" in attributes
+        if tag == "script" and not self.may_load(attributes.get("src", "")):
             self.problems.append((line, "a script"))
         if tag == "img" and not attributes.get("alt"):
             self.problems.append((line, f"the picture {attributes.get('src')} has no words"))
@@ -59,14 +63,18 @@ class Page:
         elif tag == "a" and "href" in attributes:
             self.needs.append((line, "link", attributes["href"]))
 
+    def may_load(self, script: str) -> bool:
+        """Whether the page may load a script."""
+        return script in LIVE if self.live else bool(script) and os.path.basename(self.path) == SEARCH
+
 
 def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, address: str) -> str:
     """What is wrong with an address, or nothing."""
     parts = urllib.parse.urlsplit(address)
     if parts.scheme or parts.netloc:
         return "is loaded from elsewhere" if kind == "load" else ""
-    name = urllib.parse.unquote(parts.path) or os.path.basename(page.path)
-    if os.path.normpath(name) not in files:
+    name = os.path.normpath(os.path.join(os.path.dirname(page.name), urllib.parse.unquote(parts.path))) if parts.path else page.name
+    if name not in files:
         return "does not exist"
     place = urllib.parse.unquote(parts.fragment)
     if place and (name not in pages or place not in pages[name].places):
@@ -76,7 +84,8 @@ def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, a
 
 def check(folder: str) -> list[str]:
     """All problems as sentences."""
-    pages = {os.path.basename(path): Page(path) for path in sorted(glob.glob(os.path.join(folder, "*.html")))}
+    paths = sorted(glob.glob(os.path.join(folder, "**", "*.html"), recursive=True))
+    pages = {name: Page(path, name) for path in paths for name in [os.path.relpath(path, folder)]}
     files = {os.path.relpath(os.path.join(below, name), folder) for below, _, names in os.walk(folder) for name in names}
     problems = [] if "index.html" in pages else [f"{folder}: has no index.html"]
     for page in pages.values():

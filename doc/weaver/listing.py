@@ -28,6 +28,9 @@ TOKEN = re.compile(
       | (?P<other>\s+|.)""", re.VERBOSE | re.MULTILINE | re.DOTALL)
 
 
+ROOT = re.compile(r"\w+/\w+\.(?:plugin\.cpp|[ch]pp)$")  # the name of a chunk that is a file
+FRAME = re.compile(r"\s*(?:#.*|(?:inline )?namespace\b[^;]*\{|\}+(?:\s*//.*)?|\x01\d+\x02|//.*|using [^;(]*;|(?:class|struct) \w+;|)$")
+
 WHOLE = 12  # a chunk of so many lines is not cut by the end of a page
 MOST = 8  # uses of an identifier that are listed below its definition; the index lists all
 
@@ -35,6 +38,29 @@ MOST = 8  # uses of an identifier that are listed below its definition; the inde
 def anchor_of(word: str) -> str:
     """A place in the index; letters, digits and underscores stay, others (operators) become their codes."""
     return "id-" + re.sub(r"\W", lambda match: f".{ord(match[0]):x}", word)
+
+
+def is_skeleton(chunk: Chunk) -> bool:
+    """Whether a chunk only joins others to a file: includes, namespaces and uses, with little else."""
+    lines = chunk.text.split("\n")
+    framing = [line for line in lines if FRAME.match(line)]
+    if "#include" not in chunk.text:
+        return False
+    return 3 * len(framing) >= 2 * len(lines) if ROOT.match(chunk.name) else len(framing) == len(lines)
+
+
+def interface(chunks: Iterable[Chunk]) -> set[str]:
+    """Labels of the chunks of a chapter that make its headers."""
+    own = list(chunks)
+    found: set[str] = set()
+    waiting = [chunk.name for chunk in own if ROOT.match(chunk.name) and chunk.name.endswith(".hpp")]
+    while waiting:
+        name = waiting.pop()
+        for chunk in own:
+            if chunk.name == name and chunk.label not in found:
+                found.add(chunk.label)
+                waiting += [used for used, _ in chunk.used_chunks]
+    return found
 
 
 def name_html(name: str) -> str:
@@ -54,10 +80,6 @@ class Listing:
 
     def number(self, label: str) -> str:
         """A chunk's number, which leads to it."""
-        raise NotImplementedError
-
-    def more(self, count: int, word: str) -> str:
-        """A link to all uses of a word."""
         raise NotImplementedError
 
     def word(self, word: str) -> str:
@@ -83,14 +105,6 @@ class Listing:
     def ordered(self, labels: Iterable[str]) -> list[str]:
         return sorted(set(labels), key=lambda label: self.by_label[label].number)
 
-    def numbers(self, labels: Iterable[str], word: str = "") -> str:
-        """Links in the order of the book; of the uses of a word only the first few, and a link to all."""
-        unique = self.ordered(labels)
-        shown = unique if not word or len(unique) <= MOST + 1 else unique[:MOST]
-        out = ", ".join(self.number(label) for label in shown)
-        more = len(unique) - len(shown)
-        return f"{out} and {self.more(more, word)}" if more else out
-
     def code(self, chunk: Chunk) -> str:
         out: list[str] = []
         waiting: list[str] = []  # plain text waits for its neighbours, since it comes in many small pieces
@@ -115,22 +129,6 @@ class Listing:
                 put(self.colour(kind, text))
         put("")
         return "".join(out)
-
-    def foot(self, chunk: Chunk) -> str:
-        notes, place = [], chunk.pieces.index(chunk)
-        if place > 0:
-            notes.append(f"Continues {self.number(chunk.pieces[place - 1].label)}")
-        if place + 1 < len(chunk.pieces):
-            notes.append(f"Continued in {self.number(chunk.pieces[place + 1].label)}")
-        if chunk.used_in:
-            notes.append(f"Used in {self.numbers(chunk.used_in)}")
-        elif place == 0:
-            notes.append("A file of the program")
-        for word, users in chunk.defines:
-            others = [label for label in users if label != chunk.label]
-            where = f", used in {self.numbers(others, word)}" if others else ""
-            notes.append(f"Defines {self.word(word)}{where}")
-        return ". ".join(notes) + "."
 
     def named_chunks(self) -> list[Chunk]:
         """The first piece of each chunk, by name."""
@@ -202,6 +200,9 @@ def comment_at(place: int, lines: list[str]) -> str:
     return re.split(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])", text)[0].rstrip(".;: ")
 
 
+FOLDED = ' <span class="folded">includes and frame of the file</span>'
+
+
 class HtmlListing(Listing):
     """Chunks as HTML. Links are written as chunk:LABEL; the weaver puts the address in when it lays out the pages."""
 
@@ -209,6 +210,30 @@ class HtmlListing(Listing):
         chunk = self.by_label[label]
         place = escape(f"{noweb.plain(chunk.name)}, {chunk.chapter.path}", quote=True)
         return f'<a href="chunk:{label}" title="{place}">{chunk.number}</a>'
+
+    def numbers(self, labels: Iterable[str], word: str = "") -> str:
+        """Links in the order of the book; of the uses of a word only the first few, and a link to all."""
+        unique = self.ordered(labels)
+        shown = unique if not word or len(unique) <= MOST + 1 else unique[:MOST]
+        out = ", ".join(self.number(label) for label in shown)
+        more = len(unique) - len(shown)
+        return f"{out} and {self.more(more, word)}" if more else out
+
+    def foot(self, chunk: Chunk) -> str:
+        notes, place = [], chunk.pieces.index(chunk)
+        if place > 0:
+            notes.append(f"Continues {self.number(chunk.pieces[place - 1].label)}")
+        if place + 1 < len(chunk.pieces):
+            notes.append(f"Continued in {self.number(chunk.pieces[place + 1].label)}")
+        if chunk.used_in:
+            notes.append(f"Used in {self.numbers(chunk.used_in)}")
+        elif place == 0:
+            notes.append("A file of the program")
+        for word, users in chunk.defines:
+            others = [label for label in users if label != chunk.label]
+            where = f", used in {self.numbers(others, word)}" if others else ""
+            notes.append(f"Defines {self.word(word)}{where}")
+        return ". ".join(notes) + "."
 
     def more(self, count: int, word: str) -> str:
         return f'<a href="identifiers.html#{anchor_of(word)}">{count} more</a>'
@@ -233,11 +258,13 @@ class HtmlListing(Listing):
 
     def chunk(self, chunk: Chunk, anchor: str) -> str:
         again = "+" if chunk.pieces[0] is not chunk else ""
-        return (f'<div class="chunk" id="{anchor}">\n'
-                f'<p class="chunk-name"><a class="chunk-number" href="#{anchor}">{chunk.number}</a>'
-                f'⟨{name_html(chunk.name)}⟩<span class="defines">{again}≡</span></p>\n'
+        folds = is_skeleton(chunk)
+        box, head = ("details", "summary") if folds else ("div", "p")
+        return (f'<{box} class="chunk" id="{anchor}">\n'
+                f'<{head} class="chunk-name"><a class="chunk-number" href="#{anchor}">{chunk.number}</a>'
+                f'⟨{name_html(chunk.name)}⟩<span class="defines">{again}≡</span>{FOLDED if folds else ""}</{head}>\n'
                 f'<pre><code>{self.code(chunk)}</code></pre>\n'
-                f'<p class="chunk-foot">{self.foot(chunk)}</p>\n</div>')
+                f'<p class="chunk-foot">{self.foot(chunk)}</p>\n</{box}>')
 
     def chunk_index(self) -> str:
         rows = [f'<tr><td>⟨{name_html(chunk.name)}⟩</td>'
@@ -252,33 +279,47 @@ class HtmlListing(Listing):
         return table(("Identifier", "what it is", "defined in", "used in"), rows)
 
 
-TEX = {"number": "digits"}  # \litnumber is the number of a chunk
+TEX = {"number": "digits"}  # \\litnumber is the number of a chunk
+MOST_NOTES = 4  # uses of a chunk that are named beside its name on paper
 
 
 class TexListing(Listing):
-    """Chunks as LaTeX, for book.sty."""
+    """Chunks as LaTeX, for malus.sty. Paper has less than the site: no skeletons of files, and of some chapters only the interface.
+
+    `printed` says in which volume a chunk is; one that it does not have is left to the site.
+    """
+
+    def __init__(self, chapters: list[noweb.Chapter], names: Sequence[Name], printed: dict[str, int]) -> None:
+        super().__init__(chapters, names)
+        self.printed = printed
+        self.volume = 1  # the one that is being written
 
     def number(self, label: str) -> str:
-        return rf"\litnumber{{{label}}}{{{self.by_label[label].number}}}"
-
-    def more(self, count: int, word: str) -> str:
-        return rf"\litmore{{{anchor_of(word)}}}{{{count}}}"
+        if self.printed.get(label) == self.volume:
+            return rf"\litnumber{{{label}}}{{{self.by_label[label].number}}}"
+        return str(self.by_label[label].number)
 
     def word(self, word: str) -> str:
         return rf"\litcode{{{noweb.quote_latex(word)}}}"
 
     def prose(self, words: str) -> str:
+        """Words as they are."""
         return noweb.quote_latex(words).replace("-{}", "-").replace("\\textquotesingle{}", "'")
 
     def name(self, name: str) -> str:
+        """A chunk's name; it may quote code in double brackets."""
         parts = re.split(r"\[\[(.*?)\]\]", name)
         return "".join(self.word(part) if i % 2 else self.prose(part) for i, part in enumerate(parts))
 
     def use(self, name: str, label: str) -> str:
-        return rf"\lituse{{{label}}}{{{self.by_label[label].number}}}{{{self.name(name)}}}"
+        if self.printed.get(label) == self.volume:
+            return rf"\lituse{{{label}}}{{{self.by_label[label].number}}}{{{self.name(name)}}}"
+        return rf"\litusefar{{{self.by_label[label].number}}}{{{self.name(name)}}}"
 
     def identifier(self, text: str, label: str) -> str:
-        return rf"\litidentifier{{{label}}}{{{self.plain(text)}}}"
+        if self.printed.get(label) == self.volume:
+            return rf"\litidentifier{{{label}}}{{{self.plain(text)}}}"
+        return self.plain(text)
 
     def plain(self, text: str) -> str:
         return noweb.quote_latex(text).replace(" ", "\\ ")
@@ -286,29 +327,40 @@ class TexListing(Listing):
     def colour(self, kind: str, text: str) -> str:
         return "\n".join(rf"\lit{TEX.get(kind, kind)}{{{self.plain(line)}}}" if line else "" for line in text.split("\n"))
 
+    def notes(self, chunk: Chunk) -> str:
+        """Where a chunk leads, in a few words beside its name; what it defines is in the index, and its users on the site."""
+        notes, place = [], chunk.pieces.index(chunk)
+        if place > 0:
+            notes.append(f"from {self.number(chunk.pieces[place - 1].label)}")
+        if place + 1 < len(chunk.pieces):
+            notes.append(f"on in {self.number(chunk.pieces[place + 1].label)}")
+        users = [label for label in self.ordered(chunk.used_in) if label in self.printed]
+        if users:
+            notes.append("used in " + ", ".join(map(self.number, users[:MOST_NOTES])) + (r", \dots" if len(users) > MOST_NOTES else ""))
+        return "; ".join(notes)
+
     def chunk(self, chunk: Chunk) -> str:
         """The definition of what \\litchunk prints."""
         again = "+" if chunk.pieces[0] is not chunk else ""
+        if chunk.label not in self.printed:
+            return rf"\litdefine{{{chunk.label}}}{{\litleft{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}}}" "\n"
         lines = [rf"\litline{{{line}}}" for line in self.code(chunk).split("\n")]
         if len(lines) > WHOLE:
             lines[2:-3] = [line + r"\litbreak" for line in lines[2:-3]]
         shown = re.sub("\x01(\\d+)\x02", lambda use: chunk.used_chunks[int(use[1])][0] + " 1234", chunk.text)
         widest = max(map(len, shown.split("\n")))
         code = "\n".join(lines)
-        return (rf"\litdefine{{{chunk.label}}}{{\litname{{{chunk.label}}}{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}%" "\n"
-                rf"\litcodelines{{{widest}}}{{{code}}}\litfoot{{{self.foot(chunk)}}}}}" "\n")
-
-    def chunk_index(self) -> str:
-        return "\n".join(rf"\litchunkentry{{{self.name(chunk.name)}}}{{{self.pages(piece.label for piece in chunk.pieces)}}}"
-                         rf"{{{self.numbers(chunk.used_in) or 'a file'}}}" for chunk in self.named_chunks())
+        head = rf"\litname{{{chunk.label}}}{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}{{{self.notes(chunk)}}}"
+        return rf"\litdefine{{{chunk.label}}}{{{head}%" "\n" rf"\litcodelines{{{widest}}}{{{code}}}}}" "\n"
 
     def identifier_index(self) -> str:
-        return "\n".join(rf"\litidentifierentry{{{anchor_of(word)}}}{{{noweb.quote_latex(word)}}}{{{self.prose(about)}}}"
-                         rf"{{{self.pages(defined)}}}{{{self.numbers(used)}}}"
-                         for word, about, defined, used in self.identifiers)
-
-    def pages(self, labels: Iterable[str]) -> str:
-        return ", ".join(rf"{self.number(label)}~\litpage{{{label}}}" for label in self.ordered(labels))
+        """Where each identifier of both volumes is defined, by volume and page; those of the site alone are not listed."""
+        entries = []
+        for word, _, defined, _ in self.identifiers:
+            if places := [label for label in self.ordered(defined) if label in self.printed]:
+                pages = ", ".join(rf"\litpage{{{self.printed[label]}}}{{{label}}}" for label in places)
+                entries.append(rf"\litidentifierentry{{{noweb.quote_latex(word)}}}{{{pages}}}")
+        return "\n".join(entries)
 
 
 def table(head: Iterable[str], rows: Iterable[str]) -> str:

@@ -12,7 +12,7 @@ import sys
 
 FLOORS = {"base": "Base", "light": "Light", "surface": "Surface", "air": "Air", "scene": "Scene", "render": "Rendering",
           "files": "Files", "app": "The program", "thesis": "The thesis reproduced",
-          "python": "Python"}
+          "python": "Python", "live": "Live figures"}
 WIDE, LEFT, BOX, GAP, HEAD, EDGE = 744, 20, 27, 7, 28, 8
 NARROW = set("fijlrt.,:;'I |()")
 HEADER = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 {height}">

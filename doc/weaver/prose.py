@@ -29,7 +29,7 @@ PATTERNS = [
     ("answer", "return, result", rf"{PERSONAL}\banswer(?:s|ed)?\b"),
     ("know", "has, stores", rf"{PERSONAL}\bknows?\b"),
     ("want", "needs, takes", rf"{PERSONAL}\bwant(?:s|ed)?\b"),
-    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares|believes?|trusts?|promises?|wishes|hopes|obeys?"
+    ("mind", "a verb for things", PERSONAL + r"\b(?:remembers?|forgets?|forgives?|cares|believes?|trusts?|wishes|hopes|obeys?"
      r"|likes to|tries to|has (?:a|no) say)\b"),
     ("for", "because", r", for (?:it|they|there|we|he|she|this|that|these|then|nothing|none|nobody)\b"
      rf"|, for (?:the|an?|its|their|no|all|both|every|each) (?:[\w-]+ ){{1,4}}{FINITE}\b"),
@@ -53,7 +53,8 @@ COMPILED = {name: re.compile(pattern) for name, _, pattern in PATTERNS}
 TERMS = re.compile(
     r"aerosol|air\b|albedo|angle|atmospher|band|BRDF|BSDF|calibrat|camera|cloud|command|convention|cube|diffuse|direction|distortion|errata"
     r"|error|figure|file|format"
-    r"|Fresnel|gas|geometr|geotiff|grammar|hemispher|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
+    r"|Fresnel|film|paint|boundar|index|dielectric|gas|geometr|geotiff|grammar|hemispher"
+    r"|illuminat|image|input|inventory|Lambert|layer|leaf|leaves|lens|librar"
     r"|light|MPI|material|matri|mesh|metal|microfacet|Mie|model|Mueller|netcdf|noise|OpenEXR|optical|parallel|parameter|particle|path|pixel"
     r"|point|polari|program|Python|quadrature|radian|radiat|radiometr|random|Rayleigh|ray\b|rays\b|reflect|refract|registr|render|sampl|scatter"
     r"|scene|schema|section|sensor|sequence|sky|skies|slope|solar|spectr|spline|Stokes|sun\b|surface|table|temperature|terrain|test|thermal"
@@ -63,7 +64,7 @@ Place = tuple[str, int, str]  # kind (prose, message, comment), line, sentence
 
 COMMANDS = re.compile(r"\\(?:label|ref|eqref|cite|val|includegraphics|tag|input)(?:\[[^]]*\])?\{[^}]*\}"
                       r"|\\(?:begin|end)\{[^}]*\}(?:\[[^]]*\])?")
-ENDS = re.compile(r"(?<=[.?!])(?<!e\.g\.)(?<!i\.e\.)(?<!eq\.)(?<!sec\.)(?<!fig\.)(?<!p\.)[)'\"]*\s+(?=[A-Z\\$(`\[])")
+ENDS = re.compile(r"(?<=[.?!])(?<!e\.g\.)(?<!i\.e\.)(?<!\beq\.)(?<!\bsec\.)(?<!\bfig\.)(?<!\bp\.)[)'\"]*\s+(?=[A-Z\\$(`\[])")
 
 
 def sentences(kind: str, lines: list[tuple[int, str]]) -> Iterator[Place]:
@@ -93,12 +94,17 @@ SKIPPED = re.compile(r"\\begin\{(equation|align|eqnarray|tabular|verbatim|alltt|
 
 def prose_lines(lines: list[tuple[int, str]]) -> Iterator[list[tuple[int, str]]]:
     """Paragraphs of LaTeX without displayed equations and tables; headings and items are paragraphs."""
-    skip = ""
+    skip, ended = "", False
     paragraph: list[tuple[int, str]] = []
     for number, line in lines:
         if skip:
             if re.search(rf"\\end\{{{skip}\*?\}}", line):
                 skip = ""
+                # a formula may be the end of its sentence
+                if paragraph:
+                    paragraph.append((number, "X." if ended else "X"))
+            elif not re.match(r"\s*\\(label|tag)\{", line):
+                ended = re.search(r"\.\s*(\\(label|tag)\{[^}]*\}\s*)*$", line) is not None
             continue
         if started := SKIPPED.search(line):
             if not re.search(rf"\\end\{{{started[1]}\*?\}}", line):

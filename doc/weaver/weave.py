@@ -3,9 +3,8 @@
 
     weave.py --out DIR --work DIR --book DIR --report DIR --bibliography FILE.bib CHAPTER...
 
-The chapters come in the order of the book; a chapter's folder is the part it
-belongs to. --book holds the theme, the preface and the names of the parts
-(book.ini); --report is where `malus reproduce` left its figures and
+--book holds the theme, the preface and book.ini, which says to which part of
+which volume a chapter belongs and in which order they are read; --report is where `malus reproduce` left its figures and
 values.tex; --work keeps what LaTeXML made, so that only changed chapters are
 converted again. Every problem is printed with its file and line, and leaves
 the old book as it was.
@@ -31,6 +30,7 @@ from lxml import etree
 from lxml.builder import E
 
 import book
+import contents
 import finder
 import latexml
 import listing
@@ -118,6 +118,8 @@ class Finisher:
         """All that is done to the tree of a page."""
         for chunk in page.tree.xpath('.//p[@class="ltx_p lit-chunk"]'):
             self.chunk(chunk)
+        for figure in page.tree.xpath('.//p[@class="ltx_p lit-live"]'):
+            self.live_figure(figure)
         for element in page.tree.iter(etree.Element):
             self.without_paper(element)
         for table in page.tree.xpath(".//table"):
@@ -279,6 +281,13 @@ class Finisher:
         else:
             replace(place, E.img({"src": f"figures/{name}{os.path.splitext(path)[1]}", "alt": words}, size_of(path)))
 
+    def live_figure(self, place: Element) -> None:
+        """Where a script puts a figure that moves; nothing without the program that it needs."""
+        figure = f'<figure class="live" data-live="{escape(place.text, quote=True)}" hidden>\n<p>Live figure</p>\n</figure>'
+        around = place.getparent()
+        alone = around.get("class") == "ltx_para" and len(around) == 1
+        replace(around if alone else place, self.hole(figure if self.links.options.live else ""))
+
     # ------------------------------------------------------------ links
     def address_of(self, page: Page, label: str) -> str:
         """Where a label is, seen from a page."""
@@ -321,6 +330,9 @@ def opening(tree: Element) -> str:
     for citation in paragraph.xpath(".//cite"):
         set_text_before(citation, text_before(citation).rstrip())
         citation.drop_tree()
+    for title in paragraph.xpath('.//a[contains(@class, "lit-title")]'):
+        title.tag = "em"
+        title.attrib.clear()
     etree.strip_tags(paragraph, "a")
     html = inner(paragraph).split('<span class="ltx_note')[0].strip()
     sentence = re.match(r".{30,}?[a-z0-9)”>][.?!](?=\s+[A-Z“(]|\s*$)", html, re.DOTALL)
@@ -339,10 +351,11 @@ class HtmlBook(book.Book):
     def __init__(self, options: argparse.Namespace) -> None:
         super().__init__(options)
         self.listings = listing.HtmlListing(self.chapters, self.names)
+        self.titles: dict[str, tuple[str, str]] = {}  # label of a chapter or section -> (which of these, title)
         # the titles and bodies that the templates of the theme show are HTML already
         self.templates = jinja2.Environment(loader=jinja2.FileSystemLoader(options.book), autoescape=False,
                                             undefined=jinja2.StrictUndefined)
-        self.templates.globals.update(about=self.about["book"], parts=self.parts, front=self.front, back=self.back)
+        self.templates.globals.update(about=self.about, volumes=self.contents.volumes, parts=self.parts, front=self.front, back=self.back)
 
     def render(self, template: str, **values: Any) -> str:
         """A template of the theme, filled in."""
@@ -359,8 +372,10 @@ class HtmlBook(book.Book):
 
         finisher = Finisher(self.links, self.listings)
         for page in converter.to_xml(pages):
-            for label, (anchor, number, _) in latexml.give_addresses(page.root).items():
+            for label, (anchor, number, kind, title) in latexml.give_addresses(page.root).items():
                 self.links.labels[label] = (page, anchor, number)
+                if title:
+                    self.titles[label] = (kind, title)
             finisher.render_chunks(page)  # there is time for it while LaTeXML works
         for page in pages:
             page.addresses = latexml.resolve(page.root, functools.partial(self.to_label, page), self.to_entry)
@@ -371,18 +386,27 @@ class HtmlBook(book.Book):
             page.body = finisher.text(page)
         for part in self.parts:
             part.page.title = part.title
-            part.page.body = self.render("part.html", part=part, openings={page: opening(page.tree) for page in part.pages})
+            part.page.body = self.render("part.html", part=part, sentences={page: self.sentence(page) for page in part.pages})
         self.add_indexes(finisher)
+
+    def sentence(self, page: Page) -> str:
+        """A paragraph that says what a chapter is about."""
+        own = self.contents.sentence(contents.key_of(page.source))
+        return f"<p>{own}</p>" if own else opening(page.tree)
 
     def to_label(self, page: Page, label: str) -> latexml.Address:
         """How a page leads to a label."""
         home, anchor, number = self.links.labels[label]
-        return ("" if home is page else home.file) + "#" + anchor, number or "here", "" if home is page else home.source
+        address = ("" if home is page else home.file) + "#" + anchor
+        if label in self.titles:
+            kind, title = self.titles[label]
+            return latexml.Address(address, title, f"{kind} {number}".strip(), True)
+        return latexml.Address(address, number or "here", "" if home is page else home.source, False)
 
     def to_entry(self, key: str) -> latexml.Address:
         """How a page leads to an entry of the bibliography."""
         entry = self.links.bibliography[key]
-        return f"bibliography.html#{key}", str(self.links.numbers[key]), f"{entry.family} {entry.get('year')}".strip()
+        return latexml.Address(f"bibliography.html#{key}", str(self.links.numbers[key]), f"{entry.family} {entry.get('year')}".strip(), False)
 
     def number_entries(self, page: Page) -> None:
         """The bibliography's entries get their numbers, and links to the chapters that cite them."""
@@ -422,21 +446,22 @@ class HtmlBook(book.Book):
         """A whole page, with the contents beside it."""
         title = " ".join(re.sub(r"<[^>]*>", "", page.title).split())
         if page.name != "index":
-            title += f" - {self.about['book']['title']}"
+            title += f" - {self.about['title']}"
         above = next((part.page for part in self.parts if page in part.pages), None)
         return self.render("page.html", page=page, before=before, after=after, above=above, title=title) + "\n"
 
     def title_page(self) -> Page:
         """The first page."""
         page = Page("index", "", "")
-        page.title = self.about["book"]["title"]
-        first = self.front[0] if self.front else self.parts[0].pages[0]
-        page.body = self.render("title.html", first=first, picture=self.title_picture())
+        page.title = self.about["title"]
+        path = self.readers_path()
+        first = path[0][0] if path else self.pages()[0]
+        page.body = self.render("title.html", first=first, path=path, picture=self.title_picture())
         return page
 
     def title_picture(self) -> dict[str, Any] | None:
         """One of the book's figures, if a chapter shows it; its caption leads there."""
-        name = self.about["book"]["picture"]
+        name = self.about["picture"]
         path = self.links.figures.get(name)
         home = next((page for page in self.pages() if f'src="figures/{name}.' in page.body), None)
         if not path or not home:
@@ -452,9 +477,13 @@ class HtmlBook(book.Book):
             out.put(page.file, self.layout(page, before, after))
         search = self.search_page()
         out.put(search.file, self.layout(search, None, None))
-        out.put("search-index.js", finder.index([page for page in self.pages() if page.name not in INDEXES], self.listings.identifiers))
+        searched = [page for page in self.pages() if page.name not in INDEXES]
+        out.put("search-index.js", finder.index(searched, self.listings.identifiers, self.links.anchors))
         for name in ("search.js", "book.css"):
             out.copy(name, os.path.join(self.options.book, name))
+        if self.options.live:
+            out.copy("live.js", os.path.join(self.options.book, "live.js"))
+            out.copy("live-program.js", self.options.live)
         for font in FONTS:
             if not os.path.exists(font):
                 raise Problem(font, 0, "not found; Debian's packages fonts-texgyre and fonts-texgyre-math bring it")
