@@ -52,7 +52,7 @@ pdf: need-paper $(BUILD)/CMakeCache.txt ## weave the book for paper (two PDFs)
 	@echo "The book: $(BUILD)/malus-1.pdf, $(BUILD)/malus-2.pdf"
 
 PRESS = $(shell command -v lualatex >/dev/null && command -v rsvg-convert >/dev/null && echo pdf)
-site: need-book $(BUILD)/CMakeCache.txt ## all that can be read, for a static host: book, report, PDFs if TeX is there, packages that were made
+site: need-book $(BUILD)/CMakeCache.txt look-live ## all that can be read, for a static host: book, report, PDFs if TeX is there, packages that were made
 	@cmake --build $(BUILD) -j $(JOBS) --target book reproduce $(PRESS)
 	@cmake --build $(BUILD) --target site
 	@echo "The site: $(BUILD)/site/index.html"

@@ -230,7 +230,7 @@ def times() -> None:
             time.sleep(15)  # what is prepared while the page is idle
             for control in figure["controls"]:
                 for value in steps(control):  # the least of some: what else the machine does is not the figure's
-                    taken.append(min(page.move(name, control["name"], value)["milliseconds"] for _ in range(7)))
+                    taken.append(min(page.move(name, control["name"], value)["milliseconds"] for _ in range(25)))
                 page.move(name, control["name"], control["initial"])
             print(f"{name:10} page loaded {min(loads):5.0f} ms, figures ready {min(readies):5.0f} ms;"
                   f" slider median {statistics.median(taken):6.2f} ms, most {max(taken):6.2f} ms")

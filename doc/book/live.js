@@ -290,7 +290,7 @@
     constructor(program, figure, element) {
       Object.assign(this, { program, figure, element });
       this.picture = make("div", { class: "live-picture", role: "img" });
-      this.numbers = make("dl", { class: "live-numbers", "data-columns": figure.columns });
+      this.numbers = make("dl", { class: "live-numbers" });
       this.message = make("p", { class: "live-message", role: "status" });
       const reset = make("button", { type: "button" }, "Reset");
       reset.addEventListener("click", () => this.reset());
