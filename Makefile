@@ -28,22 +28,22 @@ LIVE    := emscripten
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all prose test book pdf site reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
-.PHONY: need-mpi need-program need-book need-test need-browser need-live need-press need-paper
+.PHONY: need-mpi need-program need-book need-test need-browser need-live look-live need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
 
-all: need-book $(BUILD)/CMakeCache.txt ## build, reproduce the thesis, weave the book, print the verdict
+all: need-book $(BUILD)/CMakeCache.txt look-live ## build, reproduce the thesis, weave the book, print the verdict
 	@cmake --build $(BUILD) -j $(JOBS) --target everything
 	@cat $(BUILD)/report/summary.txt
 	@command -v em++ >/dev/null || echo "The book's figures do not move: install $(LIVE) and run make again."
 	@echo "The report: $(BUILD)/report/report.html"
 	@echo "The book:   $(BUILD)/book/index.html"
 
-test: need-test need-browser need-live need-press $(BUILD)/CMakeCache.txt ## build and run all tests, the weaver's and the book's as well
+test: need-test need-browser need-live need-press $(BUILD)/CMakeCache.txt look-live ## build and run all tests, the weaver's and the book's as well
 	@cmake --build $(BUILD) -j $(JOBS) --target all everything $(PRESS)
 	@ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --progress
 
-book: need-book $(BUILD)/CMakeCache.txt ## weave the book (HTML)
+book: need-book $(BUILD)/CMakeCache.txt look-live ## weave the book (HTML)
 	@cmake --build $(BUILD) -j $(JOBS) --target book
 	@echo "The book: $(BUILD)/book/index.html"
 
@@ -222,7 +222,10 @@ need-browser:
 
 need-live:
 	@$(NEED) $(LIVE) || echo "The book's figures do not move."
-	@test ! -e $(BUILD)/CMakeCache.txt || cmake $(BUILD) >/dev/null 2>&1
+
+# (a build that was configured without it looks again)
+look-live:
+	@! command -v em++ >/dev/null || ! grep -q 'MALUS_EMSCRIPTEN:.*NOTFOUND' $(BUILD)/CMakeCache.txt || cmake $(BUILD) >/dev/null
 
 need-press:
 	@$(NEED) $(PAPER) || echo "The book is not printed, and so what LaTeX says of it is not heard."

@@ -141,12 +141,12 @@ class Workshop(unittest.TestCase):
         with open(os.path.join(self.dir, "book", name), encoding="utf-8") as file:
             return file.read()
 
-    def weave(self) -> tuple[int, str]:
+    def weave(self, *more: str) -> tuple[int, str]:
         """(exit code, complaints)"""
         done = subprocess.run(
             [os.path.join(WEAVER, "weave.py"), "--out", "book", "--work", os.path.join(self.shared, "work"), "--book",
              self.theme, "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", "nw/light/first.nw", "nw/surface/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), "--headers", "generated", *more, "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -289,6 +289,22 @@ class WovenBook(Workshop):
         self.assertEqual([name for name in names if "<script" in self.get(name)], ["search.html"])
         self.assertNotRegex(pages, r'src="https?:')
 
+    def test_a_live_figure_needs_its_program(self) -> None:
+        """Without the program the page has neither figure nor script; with it both, hidden until a script runs."""
+        text = FIRST.replace("\\end{figure}\n", "\\end{figure}\n\\livefigure{fresnel}\n", 1)
+        self.assertIn("livefigure", text)
+        self.put("nw/light/first.nw", text)
+        self.assertEqual(self.weave(), (0, ""))
+        self.assertNotRegex(self.get("light-first.html"), "livefigure|lit-live|data-live|<script")
+        self.assertEqual(self.check_links(), (0, ""))
+        self.put("program.js", "")
+        self.assertEqual(self.weave("--live", "program.js"), (0, ""))
+        page = self.get("light-first.html")
+        self.assertIn('<figure class="live" data-live="fresnel" hidden>', page)
+        self.assertEqual(re.findall(r'<script defer src="([^"]*)">', page), ["live-program.js", "live.js"])
+        self.assertNotIn("<script", self.get("surface-second.html"))
+        self.assertEqual(self.check_links(), (0, ""))
+
     def test_a_page_that_no_longer_belongs_to_the_book_is_removed(self) -> None:
         self.put("book/old.html", "old")
         self.assertEqual(self.weave(), (0, ""))
@@ -368,6 +384,7 @@ class SpoiledBook(Workshop):
 
     def test_script(self) -> None:
         self.spoiled("index.html", "</main>", "<script></script></main>", "a script")
+        self.spoiled("light-first.html", "</main>", '<script src="live.js"></script></main>', "a script")
 
 
 class Site(Workshop):

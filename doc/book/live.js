@@ -153,31 +153,37 @@
     return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
   }));
   // a disk of values on rings and azimuths; the cell of each pixel is found once
-  const cells = new Map();
-  const dome = (values, rings, azimuths, size, most, cyclic) => {
-    const canvas = make("canvas", { width: size, height: size }), context = canvas.getContext("2d"), image = context.createImageData(size, size);
-    if (!cells.has(size)) {
-      const found = new Int32Array(size * size).fill(-1);
+  class Disk {
+    constructor(size, rings, azimuths) {
+      this.canvas = make("canvas", { width: size, height: size });
+      this.context = this.canvas.getContext("2d");
+      this.image = this.context.createImageData(size, size);
+      this.pixels = new Uint32Array(this.image.data.buffer);
+      this.cells = new Int32Array(size * size).fill(-1);
       for (let y = 0; y < size; ++y)
         for (let x = 0; x < size; ++x) {
           const right = (x + 0.5) / size * 2 - 1, down = (y + 0.5) / size * 2 - 1, r = Math.hypot(right, down);
           if (r > 1) continue;
           const turn = Math.atan2(-right, down) / (2 * Math.PI);
-          found[y * size + x] = Math.round(r * (rings - 1)) * azimuths + Math.round((turn + 1) * azimuths) % azimuths;
+          this.cells[y * size + x] = Math.round(r * (rings - 1)) * azimuths + Math.round((turn + 1) * azimuths) % azimuths;
         }
-      cells.set(size, found);
     }
-    const pixels = new Uint32Array(image.data.buffer), found = cells.get(size), shade = shades[Number(cyclic)];
-    const tone = Uint32Array.from(values, (value) => shade[Math.round(Math.min(value / most, 1) * 255)]);
-    for (let i = 0; i < found.length; ++i) if (found[i] >= 0) pixels[i] = tone[found[i]];
-    context.putImageData(image, 0, 0);
-    return canvas;
-  };
+    paint(values, most, cyclic) {
+      const { cells, pixels } = this, shade = shades[Number(cyclic)];
+      const tone = Uint32Array.from(values, (value) => shade[Math.round(Math.min(value / most, 1) * 255)]);
+      for (let i = 0; i < cells.length; ++i) if (cells[i] >= 0) pixels[i] = tone[cells[i]];
+      this.context.putImageData(this.image, 0, 0);
+      return this.canvas;
+    }
+  }
   // what the colours mean
   const scaleOf = (most, cyclic, words) => {
     const drawing = new Drawing(110, 306);
-    for (let i = 0; i < 100; ++i)
-      drawing.add("rect", { x: 20, y: 290 - 2.7 * (i + 1), width: 18, height: 3, style: `fill: rgb(${colour(i / 99, cyclic)})` });
+    const inside = drawing.add("foreignObject", { x: 20, y: 20, width: 18, height: 270 }), strip = make("canvas", { width: 1, height: 256 });
+    const context = strip.getContext("2d"), image = context.createImageData(1, 256);
+    new Uint32Array(image.data.buffer).set(Array.from(shades[Number(cyclic)]).reverse());
+    context.putImageData(image, 0, 0);
+    inside.append(strip);
     drawing.add("rect", { x: 20, y: 20, width: 18, height: 270, class: "frame" });
     for (const at of cyclic ? [0, 45, 90, 135, 180] : ticks(0, most)) drawing.text(46, 290 - 270 * at / most + 4.5, String(at));
     drawing.text(110, 155, words, { "text-anchor": "middle", transform: "rotate(-90 103 155)" });
@@ -216,11 +222,12 @@
       return [f00.drawing.svg, dolp.drawing.svg];
     },
     plate() { return []; },
-    sky({ curve }, value) {
+    sky({ curve }, value, _, figure) {
       const side = 300, middle = side / 2, radius = 140, drawing = new Drawing(side, side + 6);
       const to = (zenith, phi) => [middle - radius * zenith / 90 * Math.sin(phi * Math.PI / 180), middle + radius * zenith / 90 * Math.cos(phi * Math.PI / 180)];
       const scale = value.quantity === 0 ? Math.max(...curve.dome) : value.quantity === 1 ? 1 : 180;
-      const canvas = dome(curve.dome, 91, 180, 4 * radius, scale, value.quantity === 2);
+      figure.disk = figure.disk || new Disk(4 * radius, 91, 180);
+      const canvas = figure.disk.paint(curve.dome, scale, value.quantity === 2);
       const inside = drawing.add("foreignObject", { x: middle - radius, y: middle - radius, width: 2 * radius, height: 2 * radius });
       inside.append(canvas);
       drawing.add("circle", { cx: middle, cy: middle, r: radius, class: "frame" });
@@ -240,17 +247,17 @@
         cloud.text(at(tick, 0)[0], size + 30, minus(tick), { "text-anchor": "middle" });
         cloud.text(52, at(0, tick)[1] + 4.5, minus(tick), { "text-anchor": "end" });
       }
-      curve.S1.forEach((s1, i) => { if (Math.max(Math.abs(s1), Math.abs(curve.S2[i])) < widest) cloud.dot(...at(s1, curve.S2[i]), "draw", 1.8); });
+      const inside = Array.from(curve.S1, (s1, i) => [s1, curve.S2[i]]).filter(([s1, s2]) => Math.max(Math.abs(s1), Math.abs(s2)) < widest);
+      cloud.add("path", { class: "draw", d: inside.map(([s1, s2]) => `M${at(s1, s2).map(place).join(" ")}h0`).join("") });
       const [x, y] = at(value.p0, 0);
       cloud.line([[x - 7, y], [x + 7, y]], "second"), cloud.line([[x, y - 7], [x, y + 7]], "second");
       cloud.text(60 + size / 2, size + 52, "S1 / S0 [%]", { "text-anchor": "middle" });
       cloud.text(14, 12 + size / 2, "S2 / S0 [%]", { "text-anchor": "middle", transform: `rotate(-90 14 ${12 + size / 2})` });
-      const bars = new Plot(true, { height: size - (narrow ? 80 : 0), x: [0, widest], y: [0, Math.max(...curve.count) * 1.1], xLabel: "measured DoLP [%]", yLabel: "share of the measurements" });
+      const bars = new Plot(true, { height: size - (narrow ? 80 : 16), x: [0, widest], y: [0, Math.max(...curve.count) * 1.1], xLabel: "measured DoLP [%]",
+        yLabel: "share of the measurements", legend: [["mark", "true"], ["second", "mean"], ["first", "debiased"]] });
       const width = widest / curve.count.length;
-      curve.count.forEach((count, i) => {
-        const [left, top] = bars.to(i * width, count), [right, bottom] = bars.to((i + 1) * width, 0);
-        bars.drawing.add("rect", { x: place(left), y: place(top), width: place(right - left), height: place(bottom - top), class: "bar" });
-      });
+      const steps = Array.from(curve.count, (count, i) => [bars.to(i * width, count), bars.to((i + 1) * width, count)]).flat();
+      bars.drawing.add("path", { class: "bar", d: path([bars.to(0, 0), ...steps, bars.to(widest, 0)]) + "Z" });
       bars.upright(value.p0), bars.upright(measured, "second"), bars.upright(debiased, "first");
       return [cloud.svg, bars.drawing.svg];
     },
@@ -260,7 +267,9 @@
       for (const zenith of [30, 60, 90]) drawing.add("circle", { cx: middle, cy: middle, r: radius * zenith / 90, class: zenith === 90 ? "frame" : "ring" });
       for (const zenith of [30, 60]) drawing.text(middle + 3, middle - radius * zenith / 90 - 3, `${zenith}°`, { class: "small" });
       const most = Math.max(...curve.share, 1e-12);
-      curve.zenith.forEach((zenith, i) => drawing.dot(...to(zenith, curve.azimuth[i]), "sample", 1 + 4.5 * Math.sqrt(Math.max(curve.share[i], 0) / most)));
+      const dot = ([x, y], r) => `M${place(x - r)} ${place(y)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+      curve.zenith.forEach((zenith, i) => drawing.add("path", { class: "sample",
+        d: dot(to(zenith, curve.azimuth[i]), place(1 + 4.5 * Math.sqrt(Math.max(curve.share[i], 0) / most))) }));
       const [x, y] = to(value.viewer, 0);
       drawing.add("rect", { x: x - 5, y: y - 5, width: 10, height: 10, class: "line second" });
       return drawing.svg;
@@ -292,8 +301,13 @@
       element.replaceChildren(this.picture, form, this.numbers, this.message, caption);
       element.setAttribute("aria-label", `Live figure: ${figure.title}`);
       element.hidden = false;
+      this.narrow = element.clientWidth < 520;  // asked at a change alone, since it lays out the whole page
       this.reset();
-      new ResizeObserver(() => this.update()).observe(element);
+      new ResizeObserver(([{ contentRect }]) => {
+        if (this.narrow === contentRect.width < 490) return;
+        this.narrow = !this.narrow;
+        this.update();
+      }).observe(element);
     }
     // a slider or a choice, with its label and its value
     control(control) {
@@ -325,7 +339,7 @@
       });
       this.say(answer.numbers);
       const value = Object.fromEntries(this.controls.map(({ control }, i) => [control.name, values[i]]));
-      this.picture.replaceChildren(...[draw[this.figure.name](answer, value, this.element.clientWidth < 520)].flat());
+      this.picture.replaceChildren(...[draw[this.figure.name](answer, value, this.narrow, this)].flat());
       this.picture.setAttribute("aria-label", `${this.figure.shows} Now ` +
         this.controls.map(({ control, input, output }) => `${control.label} ${control.choices[input.value] || output.textContent}`).join(", ") + ".");
       this.element.dataset.milliseconds = (performance.now() - began).toFixed(2);

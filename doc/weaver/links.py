@@ -6,8 +6,9 @@
 Reads all pages in DIR and below. It fails on a link to a page or a place that does not
 exist, a picture or font that is not there, a name given to two places of a
 page, a picture without words, anything loaded from elsewhere (links one may
-follow are allowed), scripts on any page but the search, and what LaTeXML or the
-weaver leave behind when they could not do their work.
+follow are allowed), scripts other than those of the search and of the live
+figures, and what LaTeXML or the weaver leave behind when they could not do
+their work.
 """
 import glob
 import os
@@ -18,8 +19,9 @@ from typing import Any
 
 import lxml.html
 
-LEFT_BEHIND = re.compile(r"ltx_ERROR|ltx_missing|lit-chunk|lit-figure|^chunk:|^LABEL:")
-SCRIPTED = "search.html"  # the only page that may load scripts; it has none of its own
+LEFT_BEHIND = re.compile(r"ltx_ERROR|ltx_missing|lit-chunk|lit-figure|lit-live|^chunk:|^LABEL:")
+SEARCH = "search.html"  # may load scripts; no page has one in it
+LIVE = ("live-program.js", "live.js")  # may be loaded by a page with live figures
 LOADS = {"img": "src", "link": "href", "script": "src", "iframe": "src", "source": "src"}
 PARSER = lxml.html.HTMLParser(encoding="utf-8")
 
@@ -32,6 +34,7 @@ class Page:
         self.places: set[str] = set()
         self.needs: list[tuple[int, str, str]] = []
         self.problems: list[tuple[int, str]] = []
+        self.live = False  # whether it has a figure that moves
         for element in lxml.html.parse(path, PARSER).getroot().iter():
             if isinstance(element.tag, str):
                 self.read(element)
@@ -48,7 +51,8 @@ class Page:
         for name, value in attributes.items():
             if name != "alttext" and (trace := LEFT_BEHIND.search(value)):
                 self.problems.append((line, f"{trace[0]} was left behind"))
-        if tag == "script" and (os.path.basename(self.path) != SCRIPTED or not attributes.get("src")):
+        self.live = self.live or "data-live" in attributes
+        if tag == "script" and not self.may_load(attributes.get("src", "")):
             self.problems.append((line, "a script"))
         if tag == "img" and not attributes.get("alt"):
             self.problems.append((line, f"the picture {attributes.get('src')} has no words"))
@@ -58,6 +62,10 @@ class Page:
             self.needs.append((line, "load", address))
         elif tag == "a" and "href" in attributes:
             self.needs.append((line, "link", attributes["href"]))
+
+    def may_load(self, script: str) -> bool:
+        """Whether the page may load a script."""
+        return script in LIVE if self.live else bool(script) and os.path.basename(self.path) == SEARCH
 
 
 def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, address: str) -> str:
