@@ -213,6 +213,18 @@ class WovenBook(Workshop):
         options = argparse.Namespace(bibliography=os.path.join(ROOT, "doc", "bibliography.bib"), report="nowhere")
         return weave.Finisher(book.Links(options), listing.HtmlListing([]))
 
+    def test_heads_that_begin_sentences_run_in_and_terms_stay_terms(self) -> None:
+        def list_of(head: str, body: str) -> str:
+            line = lxml.html.fragment_fromstring(f'<div><dl class="ltx_description"><dt class="ltx_item">{head}</dt>'
+                                                 f'<dd class="ltx_item"><div class="ltx_para"><p>{body}</p></div></dd></dl></div>')
+            weave.Finisher.run_in(line[0])
+            return weave.inner(line)
+        self.assertEqual(list_of("<b>AoLP,</b>", "the angle."), '<ul class="run-in"><li class="ltx_item"><div class="ltx_para">'
+                         '<p><span class="head"><b>AoLP,</b></span> the angle.</p></div></li></ul>')
+        self.assertIn('class="run-in"', list_of("Four cameras", "look at it."))
+        for head, body in (("A plate.", "A plate is flat."), ('<span class="ltx_font_typewriter">width</span>', "of the lobe")):
+            self.assertIn('<dl class="ltx_description"><dt class="ltx_item">', list_of(head, body))
+
     def test_a_prime_is_not_raised_twice_and_large_brackets_keep_a_distance(self) -> None:
         line = lxml.html.fragment_fromstring("<math><msup><mi>f</mi><mo>′</mo></msup><msubsup><mi>g</mi><mn>1</mn><mo>′</mo></msubsup>"
                                              "<mo>(</mo><mtable><mtr></mtr></mtable><mo>)</mo><msup><mi>h</mi><mo>+</mo></msup></math>")
@@ -794,6 +806,11 @@ class Places(unittest.TestCase):
             self.contents(CONTENTS).ordered(["nw/air/Sun.nw"])
         with self.assertRaisesRegex(Problem, "surface/second is in the parts surface and again"):
             self.contents(CONTENTS + "[again]\nvolume = 2\ntitle = A\nabout = A.\nchapters = surface/second\n")
+
+    def test_the_order_of_the_floors_names_each_chapter_once(self) -> None:
+        with open(os.path.join(ROOT, "nw", "order.txt"), encoding="utf-8") as file:
+            named = [line.split()[0] for line in file if line.strip() and not line.startswith("#")]
+        self.assertEqual(sorted(named), sorted(set(named)))
 
     def test_every_chapter_that_the_book_names_is_there(self) -> None:
         whole = contents.Contents(os.path.join(ROOT, "doc", "book", "book.ini"))

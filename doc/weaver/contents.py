@@ -81,7 +81,7 @@ class Contents:
                 inside = list(part.sentences)
                 return self.parts.index(part), inside.index(key) if key in inside else len(inside)
             return (-1 if key.startswith("front/") else len(self.parts)), 0
-        return sorted(paths, key=place)
+        return sorted(dict.fromkeys(paths), key=place)
 
 
 def key_of(path: str) -> str:

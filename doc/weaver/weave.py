@@ -132,6 +132,8 @@ class Finisher:
             self.space_in_brackets(matrix)
         for raised in page.tree.xpath(".//msup | .//msubsup"):
             self.lower_prime(raised)
+        for terms in page.tree.xpath('.//dl[@class="ltx_description"]'):
+            self.run_in(terms)
         self.headings(page)
         for figure in page.tree.xpath('.//span[@class="ltx_text lit-figure"]'):
             self.figure(page, figure)
@@ -220,6 +222,31 @@ class Finisher:
             raised.tag = "msub"
             wrap(base, etree.Element("mrow"))
             base.getparent().append(prime)
+
+    @staticmethod
+    def run_in(terms: Element) -> None:
+        """A list whose heads begin the sentences of its items becomes a list of sentences. A list of terms stays as it is."""
+        pairs = list(zip(terms.findall("dt"), terms.findall("dd")))
+        paragraphs = [body.find(".//p") for _, body in pairs]
+
+        def begins(head: Element, paragraph: Element) -> bool:
+            if head.xpath('.//*[contains(@class, "typewriter")]'):
+                return False
+            words, rest = head.text_content().strip(), paragraph.text_content().strip()
+            return words.endswith(",") or (words[-1:].isalpha() and rest[:1].islower())
+        if len(terms) != 2 * len(pairs) or None in paragraphs or not any(begins(head, p) for (head, _), p in zip(pairs, paragraphs)):
+            return
+        for (head, body), paragraph in zip(pairs, paragraphs):
+            words = E.span({"class": "head"})
+            words.text = head.text
+            words.extend(list(head))
+            words.tail, paragraph.text = " " + (paragraph.text or "").lstrip(), None
+            paragraph.insert(0, words)
+            body.tag = "li"
+            body.attrib.update({name: value for name, value in head.attrib.items() if name == "id"})
+            head.drop_tree()
+        terms.tag = "ul"
+        terms.set("class", "run-in")
 
     # ------------------------------------------------------------ headings and figures
     def headings(self, page: Page) -> None:
