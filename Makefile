@@ -25,7 +25,7 @@ BROWSER := chromium
 # What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
-.PHONY: all test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
+.PHONY: all prose test book pdf reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
 .PHONY: need-mpi need-program need-book need-test need-browser need-press need-paper
 .DEFAULT_GOAL := all
 .NOTPARALLEL:
@@ -103,6 +103,10 @@ format-check: ## whether the chapters' code and the tests are formatted so
 	@$(NEED) clang-format noweb python3
 	@doc/weaver/format.py --check $(shell git ls-files '*.nw')
 	@clang-format --dry-run -Werror $(shell git ls-files 'tests/*.cpp' 'tests/*.hpp')
+
+LIST ?=
+prose: ## count the mannerisms of English in chapters, messages, comments and README files (LIST=PATTERN lists one)
+	@doc/weaver/prose.py $(if $(LIST),--list "$(LIST)") $(shell git ls-files '*.nw' '*.md' 'doc/book/*.tex' '*.py' | grep -v prose)
 
 lint: ## check types, names and style of the Python (module, weaver, tests, scenes)
 	@$(NEED) mypy pylint pycodestyle python3-jinja2 python3-lxml python3-pybtex python3-numpy python3-xarray python3-matplotlib python3-pytest

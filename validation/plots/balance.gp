@@ -5,8 +5,8 @@ set multiplot layout 1,2
 set xrange [0:24]; set xtics 6
 set format x '%g:00'
 set ylabel 'S_1 / S_0, s above zero'
-set yrange [-0.18:0.15]
-set key bottom center horizontal
+set yrange [-0.25:0.15]
+set key bottom center vertical
 set title 'paint, east side'
 plot 0 with lines linestyle 12, \
      'balance.csv' using 'hour':'emitted' with lines linetype 2 title 'emitted', \
