@@ -11,12 +11,10 @@ import pathlib
 import re
 from typing import Any
 
-import matplotlib
 import numpy
-from PIL import Image
-
-matplotlib.use('Agg')
-from matplotlib import pyplot  # pylint: disable=wrong-import-position,wrong-import-order  # after use()
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image  # type: ignore[import]  # without stubs
 
 PLANCK_J_S, LIGHT_M_S, BOLTZMANN_J_K = 6.62607015e-34, 299792458.0, 1.380649e-23
 RED, GREEN, BLUE, INFRARED = 650.0, 550.0, 450.0, 10000.0   # nm
@@ -48,7 +46,7 @@ def brightness_kelvin(radiance: Any, wavelength_nm: float) -> Any:
 
 
 def false_colour(light: dict[float, Any]) -> Any:
-    """Red, green and blue as on a screen; each band has its own white, and the brightest percent is cut."""
+    """Red, green and blue as on a screen; all bands have one white, and the brightest percent is cut."""
     bands = [light[length] for length in (RED, GREEN, BLUE)]
     white = max(numpy.percentile(band, 99) for band in bands)
     return numpy.clip(numpy.dstack(bands) / white, 0, 1) ** (1 / 2.2)
@@ -64,7 +62,8 @@ def main() -> None:
     lines, samples = celsius.shape
     width = (WIDTH_IN - 1.1) / 2
     height = width * lines / samples
-    figure = pyplot.figure(figsize=(WIDTH_IN, height + 0.35), dpi=DOTS_PER_IN)
+    figure = Figure(figsize=(WIDTH_IN, height + 0.35), dpi=DOTS_PER_IN)
+    canvas = FigureCanvasAgg(figure)
     boxes = [figure.add_axes((x / WIDTH_IN, 0.05 / (height + 0.35), w / WIDTH_IN, height / (height + 0.35)))
              for x, w in ((0.05, width), (0.15 + width, width), (0.25 + 2 * width, 0.15))]
     boxes[0].imshow(false_colour(scalar(given.noon)))
@@ -75,8 +74,8 @@ def main() -> None:
         box.set_axis_off()
     figure.colorbar(image, cax=boxes[2]).ax.tick_params(labelsize=8)
     boxes[2].set_title('°C', fontsize=9)
-    figure.canvas.draw()
-    Image.fromarray(numpy.asarray(figure.canvas.buffer_rgba())).convert('RGB').quantize(COLOURS).save(given.png, optimize=True)
+    canvas.draw()
+    Image.fromarray(numpy.asarray(canvas.buffer_rgba())).convert('RGB').quantize(COLOURS).save(given.png, optimize=True)
 
 
 if __name__ == '__main__':

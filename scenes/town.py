@@ -7,7 +7,7 @@
     scenes/town.py --triangles 1e7          a smaller one
 
 The parking lot (parking-lot.py) grown: blocks of houses, parks and lots between streets, with the lot's own cars, trees and glass building.
-Each kind of mesh is kept once; tables say where its copies stand, and the renderer shares its triangles ("shared": true). The number of
+Each kind of mesh is kept once; tables give the places of its copies, and the renderer shares its triangles ("shared": true). The number of
 blocks follows from --triangles. It is invented, not surveyed. The same seed gives the same files. Six days of weather heat it before noon,
 and all things of one kind share their temperatures, facet by facet.
 
@@ -40,7 +40,7 @@ BANDS = [450, 550, 650, 10000]     # nm
 
 # ---------------------------------------------------------------- meshes
 def patch(rng: random.Random) -> Any:
-    """Blades of grass on PATCH x PATCH metres, standing on z = 0."""
+    """Blades of grass on PATCH x PATCH metres, with their roots at z = 0."""
     mesh = lot.Mesh('a patch of lawn, blade by blade')
     mesh.facet('lawn', 'grass')
     for _ in range(14000):
@@ -53,7 +53,7 @@ def patch(rng: random.Random) -> Any:
 
 
 def house(_: random.Random) -> Any:
-    """9 x 11 m, two floors with windows, and a gable roof; the door to the south, standing on z = 0."""
+    """9 x 11 m, two floors with windows, and a gable roof; the door to the south, on z = 0."""
     mesh = lot.Mesh('a house: walls, windows, roof')
     mesh.facet('walls', 'plaster')
     w, d, h, ridge = 4.5, 5.5, 5.6, 8.6
@@ -182,7 +182,7 @@ HEAT: dict[str, tuple[float, float, float, float | None, float | None]] = {
     'glass': (0.14, 830, 750, 0.024, ROOM_K), 'tyre': (0.13, 910, 1100, 0.02, None), 'bark': (0.13, 500, 1600, 0.1, None),
     'body': (50, 7800, 450, 0.0008, None),              # sheet steel under lacquer
     'chrome': (50, 7800, 450, 0.002, None), 'leaf': (0.4, 800, 3600, 0.0003, None)}
-# Shares of sunlight that are absorbed where three visible bands do not tell: a leaf reflects and transmits half of it in the near infrared
+# Shares of sunlight that are absorbed where three visible bands do not suffice: a leaf reflects and transmits half of it in the near infrared
 # (D. M. Gates, Biophysical Ecology, 1980), a lawn reflects 0.23 (FAO Irrigation and Drainage Paper 56, 1998); metal is guessed.
 SUNLIGHT = {'leaf': 0.5, 'lawn': 0.77, 'metal': 0.4}
 

@@ -185,8 +185,8 @@ TEST(DayAndNightSkyRefusal, SaysWhatIsWrong) {
   json sky = dayAndNight();
   sky["glow_optical_depth"] = 0.4;
   has(sky,
-      "sky.glow_optical_depth = 0.4: at 450 nm stands beside scattered light: their sum "
-      "would neglect up to 6");
+      "sky.glow_optical_depth = 0.4: absorbs scattered light at 450 nm, and the sum of both "
+      "lights would neglect up to 6");
   has(sky, "% of the sky; give 0 in this band, and the gas to layers; or less aerosol there");
   sky = dayAndNight(), sky["glow_atmosphere"] = "us-standard";
   has(sky, "give glow_temperature_K or glow_atmosphere");
