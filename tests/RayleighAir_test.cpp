@@ -35,7 +35,8 @@ TEST(RayleighAirPublished, TheAuthorsOwnFit) {
 TEST(RayleighAirPublished, AnOlderFormulaWithinOnePercent) {
   for (double nm = 400; nm <= 800; nm += 50)
     EXPECT_NEAR(rayleighOpticalDepth(nm) / hansenTravis(nm / 1000), 1, 0.01) << nm;
-  for (const double nm : {2000, 4000, 10000, 20000})  // beyond the measurements: the fourth power
+  for (const double nm :
+       {2000, 4000, 10000, 20000})  // beyond the measurements: the fourth power
     EXPECT_NEAR(rayleighOpticalDepth(nm) / hansenTravis(nm / 1000), 1, 0.01) << nm;
 }
 

@@ -15,16 +15,16 @@ MALUS = sys.argv.pop() if len(sys.argv) > 1 else "malus"
 COPPER = ["n=0.405", "k=2.950", "sigma=0.2"]
 
 
-def run(*arguments):
+def run(*arguments: str) -> str:
     return subprocess.run([MALUS, *arguments], capture_output=True, text=True, check=True).stdout
 
 
-def last_row(text):
+def last_row(text: str) -> dict[str, str]:
     rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
     return dict(zip(rows[0], rows[-1]))
 
 
-def brdf(parameters, theta_i, theta_r):
+def brdf(parameters: list[str], theta_i: float, theta_r: float) -> tuple[float, float]:
     """f00 and the DoLP of unpolarised light after reflection in the plane of incidence."""
     flags = [flag for parameter in parameters for flag in ("--param", parameter)]
     row = last_row(run("brdf", "--model", "torrance-sparrow", *flags, "--theta-i-deg", str(theta_i),
@@ -33,19 +33,19 @@ def brdf(parameters, theta_i, theta_r):
     return f00, abs(f10) / f00
 
 
-def zenith(*flags):
+def zenith(*flags: str) -> tuple[float, float]:
     """I and Q at the zenith with the sun 60 degrees from it."""
     row = last_row(run("sky", *flags, "--mu0", "0.5", "--mu", "1"))
     return float(row["I"]), float(row["Q"])
 
 
-def exercises(chapter):
+def exercises(chapter: str) -> str:
     with open(os.path.join(ROOT, "nw", "thesis", chapter + ".nw"), encoding="utf-8") as file:
         return file.read().split("\\section{Exercises}", 1)[1]
 
 
 class Solutions(unittest.TestCase):
-    def quoted(self, chapter, value, decimals):
+    def quoted(self, chapter: str, value: float, decimals: int) -> None:
         text = exercises(chapter)
         numbers = re.findall(r"(?<![\d.])\d+(?:\.\d+)?(?![\d.]*\d)", text)
         number = f"{value:.{decimals}f}"
@@ -53,13 +53,13 @@ class Solutions(unittest.TestCase):
         wrong = f"{value + 3 * 10.0**-decimals:.{decimals}f}"
         self.assertNotIn(wrong, numbers, f"{chapter}: the control")
 
-    def test_plate(self):
+    def test_plate(self) -> None:
         self.quoted("Section71", brdf(COPPER, 30, 30)[0], 3)
         there, dolp = brdf(COPPER, 30, 40)
         self.quoted("Section71", there, 3)
         self.quoted("Section71", 100 * dolp, 1)
 
-    def test_glass(self):
+    def test_glass(self) -> None:
         glass = ["n=1.5", "k=0"]
         self.quoted("Section72", brdf([*glass, "sigma=0.05", "diffuse=none"], 45, 45)[0], 2)
         bare, bare_dolp = brdf([*glass, "sigma=0.1", "diffuse=none"], 45, 45)
@@ -69,7 +69,7 @@ class Solutions(unittest.TestCase):
         self.quoted("Section72", bare_dolp, 4)
         self.quoted("Section72", diffuse_dolp, 4)
 
-    def test_zenith(self):
+    def test_zenith(self) -> None:
         light, polarized = zenith("--tau", "1e-6", "--depolarization", "0", "--albedo", "0")
         self.quoted("Section77", polarized / light, 1)
         black, q_black = zenith("--wavelength-nm", "450", "--albedo", "0")

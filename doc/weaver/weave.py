@@ -233,7 +233,7 @@ class Finisher:
             if head.xpath('.//*[contains(@class, "typewriter")]'):
                 return False
             words, rest = head.text_content().strip(), paragraph.text_content().strip()
-            return words.endswith(",") or (words[-1:].isalpha() and rest[:1].islower())
+            return bool(words.endswith(",") or (words[-1:].isalpha() and rest[:1].islower()))
         if len(terms) != 2 * len(pairs) or None in paragraphs or not any(begins(head, p) for (head, _), p in zip(pairs, paragraphs)):
             return
         for (head, body), paragraph in zip(pairs, paragraphs):
