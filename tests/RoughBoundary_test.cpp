@@ -73,8 +73,9 @@ TEST(RoughBoundaryInvariant, MirrorAndRefractionKeepTheEnergy) {
         const double all = mirror.S0 + sky.S0 * ratio * ratio;
         const double error = mirror.error + sky.error * ratio * ratio;
         EXPECT_LT(all, 1 + 5 * error) << sigma << ' ' << deg << ' ' << inside;
-        if (sigma < 0.2 && deg < 50)
+        if (sigma < 0.2 && deg < 50) {
           EXPECT_GT(all, 0.985 - 5 * error) << sigma << ' ' << deg << ' ' << inside;
+        }
       }
 }
 

@@ -160,7 +160,7 @@ TEST(SceneGeometryIdentity, TextureCoordinatesStayWithTheirCorners) {
     builder.addMesh(mesh, place);
     const SceneGeometry geometry = std::move(builder).build();
     EXPECT_FALSE(geometry.texture(0, {11, 1, 0}).given());
-    for (std::size_t triangle : {2u, 3u, 4u})
+    for (const std::uint32_t triangle : {2u, 3u, 4u})
       for (const double x : {0.1, 0.7, 1.5})
         for (const double y : {0.2, 1.1}) {
           const CDVector point{10 + x, mirrored ? -y : y, 0};

@@ -48,14 +48,18 @@ struct TIFF {
                                {278, 3, 1, shorts({height, 0})},
                                {279, 4, 1, longs(4u * width * height)},
                                {339, 3, 1, shorts({3, 0})}};
+    const auto add = [&](std::uint16_t tag, std::uint16_t type, std::uint32_t count,
+                         const std::string& value) {
+      Entry& entry = entries.emplace_back();
+      entry.tag = tag, entry.type = type, entry.count = count, entry.value = value;
+    };
     if (placed) {
-      entries.push_back({33550, 12, 3, doubles({10, 10, 0})});
-      entries.push_back({33922, 12, 6, doubles({0, 0, 0, 500000, 4800000, 0})});
-      entries.push_back(
-          {34735, 3, 16,
-           shorts({1, 1, 0, 3, 1024, 0, 1, model, 1025, 0, 1, 1, key, 0, 1, system})});
+      add(33550, 12, 3, doubles({10, 10, 0}));
+      add(33922, 12, 6, doubles({0, 0, 0, 500000, 4800000, 0}));
+      add(34735, 3, 16,
+          shorts({1, 1, 0, 3, 1024, 0, 1, model, 1025, 0, 1, 1, key, 0, 1, system}));
     }
-    entries.push_back({42113, 2, 6, std::string("-9999", 6)});
+    add(42113, 2, 6, std::string("-9999", 6));
     const auto data = static_cast<std::uint32_t>(4 * heights.size());
     const std::uint32_t directory = 8 + data;
     auto extra = static_cast<std::uint32_t>(directory + 2 + 12 * entries.size() + 4);
