@@ -186,7 +186,8 @@ TEST(RefusalsIdentity, AnOpenBodyOfGlassIsRefusedAtItsMaterial) {
   scene["geometry"][0]["material"] = "glass";
   expectRefusal(
       Workplace(scene), "render s.json --out a",
-      "bounds no closed body: 3 of its edges do not belong to two facets "
+      "materials.glass = {\"model\":\"dielectric\",\"n\":1.5}: bounds no closed body: 3 of its "
+      "edges do not belong to two facets "
       "with fronts on one side, one of them at (0, 0, 1) m; close the mesh, or use the model "
       "pane for a sheet");
   scene["materials"]["glass"]["temperature_K"] = 300;
