@@ -325,6 +325,15 @@ class BrokenBook(Workshop):
         self.put("report/values.tex", "\\malusval{F3.9.brewstar}{63.43}\n")
         self.fails("nw/light/first.nw:3:", r"\val{F3.9.brewster}")
 
+    def test_values_are_set_with_powers_of_ten(self) -> None:
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("⋅", self.get("light-first.html"))
+        self.assertNotIn("3.2e-05", self.get("light-first.html"))
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05b}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
+
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
         self.fails("nw/light/first.nw:19:", "F3.9/fresnel")
