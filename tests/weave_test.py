@@ -334,6 +334,29 @@ class BrokenBook(Workshop):
         self.assertEqual(self.weave()[0], 0)
         self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
 
+    def test_tables_of_reference_are_what_the_program_says(self) -> None:
+        flags = [{"name": "--help"}, {"name": "--step", "placed": False, "text": "a step, 1e-6 to -2e3; with --far", "required": True,
+                                      "several": False, "value": "TEXT", "choices": ["near"]}]
+        grey = {"name": "grey", "parameters": [{"name": "albedo", "meaning": "its share", "unit": "%", "range": "0 to 1", "default": "0.5",
+                                                "optional": False}]}
+        self.put("report/program.json", json.dumps({"commands": [{"name": "walk", "flags": flags}], "models": [grey], "skies": []}))
+        self.put("report/schema.json", json.dumps({
+            "properties": {"eye": {"description": "what sees", "properties": {"pupil_mm": {"$ref": "#/definitions/size"}}}},
+            "definitions": {"size": {"description": "a size in mm"}}, "required": ["eye"]}))
+        tables = "\n\n\\options{walk}\n\n\\parameters{grey}\n\n\\keys{eye size}\n"
+        self.put("nw/surface/second.nw", SECOND + tables)
+        self.assertEqual(self.weave(), (0, ""))
+        page = re.sub(r"<[^>]*>|\s+", " ", self.get("surface-second.html"))
+        for words in ("--step TEXT", "a step,", "; with --far : near ; required", "albedo its share [%] 0 to 1 0.5", "eye what sees; required",
+                      "pupil_mm a size in mm", "size a size in mm"):
+            self.assertIn(words, re.sub(" +", " ", page))
+        self.assertNotIn("1e-6", page)
+        self.assertNotIn("--help", page)
+
+    def test_a_table_of_reference_that_the_program_does_not_have(self) -> None:
+        self.put("nw/surface/second.nw", SECOND + "\n\\options{walk}\n")
+        self.fails("nw/surface/second.nw:13:", "walk", "does not have")
+
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
         self.fails("nw/light/first.nw:19:", "F3.9/fresnel")

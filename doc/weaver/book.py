@@ -13,6 +13,7 @@ import contents
 import latexml
 import names
 import noweb
+import reference
 import references
 import verdicts
 from problems import Problem, Problems, stop_if_any
@@ -185,6 +186,7 @@ class Book:
         self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
         self.verdicts = verdicts.Verdicts(options.report, options.inventory)
+        self.reference = reference.Reference(options.report)
         self.parts: list[Part] = []
         self.front: list[Page] = []
         self.back: list[Page] = []
@@ -256,6 +258,7 @@ class Book:
         if re.search(r"^\\inventory$", page.latex, re.MULTILINE):
             self.links.inventory = page
         self.verdicts.substitute(page, self.chapters, self.pages())
+        self.reference.substitute(page)
         self.links.substitute(page)
 
     def pages(self) -> list[Page]:
