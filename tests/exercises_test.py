@@ -77,6 +77,27 @@ class Solutions(unittest.TestCase):
         self.quoted("surface/Fresnel", inside["f22"] / inside["f00"], 3)
         self.quoted("surface/Fresnel", inside["f23"] / inside["f00"], 3)
 
+    def test_microfacets(self) -> None:
+        mirror = ["n=1", "k=1e6", "sigma=0.2", "diffuse=none"]
+        self.quoted("surface/Microfacets", matrix(mirror, 45, 45, 90)["f00"], 4)
+        hidden = matrix([*mirror, "shadowing=v-groove"], 45, 85)["f00"]
+        bare = matrix([*mirror, "shadowing=none"], 45, 85)["f00"]
+        self.quoted("surface/Microfacets", hidden, 3)
+        self.quoted("surface/Microfacets", bare, 3)
+        self.quoted("surface/Microfacets", hidden / bare, 3)
+
+    def test_rough_metal(self) -> None:
+        facets_alone = matrix([*COPPER, "diffuse=none"], 30, 40)["f00"]
+        for theta_i, theta_r in (30, 40), (40, 30):
+            f00 = matrix(COPPER, theta_i, theta_r)["f00"]
+            self.quoted("surface/BRDFTorranceSparrow", f00, 4)
+            self.quoted("surface/BRDFTorranceSparrow", f00 - facets_alone, 4)
+            self.quoted("surface/BRDFTorranceSparrow", matrix([*COPPER, "diffuse=reciprocal"], theta_i, theta_r)["f00"], 4)
+        invisible = matrix(["n=1", "k=0", "sigma=0.2"], 30, 40)
+        self.quoted("surface/BRDFTorranceSparrow", invisible["f00"], 4)
+        self.assertLess(invisible["f10"], 1e-300)
+        self.quoted("surface/BRDFTorranceSparrow", dhr(["n=1", "k=1e6", "sigma=0.2"], 0), 3)
+
     def test_plate(self) -> None:
         self.quoted("Section71", brdf(COPPER, 30, 30)[0], 3)
         there, dolp = brdf(COPPER, 30, 40)
