@@ -24,13 +24,25 @@ def last_row(text: str) -> dict[str, str]:
     return dict(zip(rows[0], rows[-1]))
 
 
+def facets(parameters: list[str], *flags: str) -> dict[str, float]:
+    """What `malus brdf` prints for the model of Torrance and Sparrow."""
+    settings = [flag for parameter in parameters for flag in ("--param", parameter)]
+    row = last_row(run("brdf", "--model", "torrance-sparrow", *settings, *flags, "--format", "csv"))
+    return {name: float(value) for name, value in row.items()}
+
+
+def matrix(parameters: list[str], theta_i: float, theta_r: float, phi: float = 180) -> dict[str, float]:
+    return facets(parameters, "--theta-i-deg", str(theta_i), "--theta-r-deg", str(theta_r), "--phi-deg", str(phi))
+
+
 def brdf(parameters: list[str], theta_i: float, theta_r: float) -> tuple[float, float]:
     """f00 and the DoLP of unpolarised light after reflection in the plane of incidence."""
-    flags = [flag for parameter in parameters for flag in ("--param", parameter)]
-    row = last_row(run("brdf", "--model", "torrance-sparrow", *flags, "--theta-i-deg", str(theta_i),
-                       "--theta-r-deg", str(theta_r), "--phi-deg", "180", "--format", "csv"))
-    f00, f10 = float(row["f00"]), float(row["f10"])
-    return f00, abs(f10) / f00
+    row = matrix(parameters, theta_i, theta_r)
+    return row["f00"], abs(row["f10"]) / row["f00"]
+
+
+def dhr(parameters: list[str], theta_i: float) -> float:
+    return facets(parameters, "--dhr", "--theta-i-deg", str(theta_i))["dhr"]
 
 
 def zenith(*flags: str) -> tuple[float, float]:
@@ -40,7 +52,8 @@ def zenith(*flags: str) -> tuple[float, float]:
 
 
 def exercises(chapter: str) -> str:
-    with open(os.path.join(ROOT, "nw", "thesis", chapter + ".nw"), encoding="utf-8") as file:
+    """The text of a chapter's exercises; the chapter as "surface/Fresnel", or by its name if it is of the thesis."""
+    with open(os.path.join(ROOT, "nw", chapter if "/" in chapter else "thesis/" + chapter) + ".nw", encoding="utf-8") as file:
         return file.read().split("\\section{Exercises}", 1)[1]
 
 
@@ -52,6 +65,38 @@ class Solutions(unittest.TestCase):
         self.assertIn(number, numbers, chapter)
         wrong = f"{value + 3 * 10.0**-decimals:.{decimals}f}"
         self.assertNotIn(wrong, numbers, f"{chapter}: the control")
+
+    def test_smooth_boundary(self) -> None:
+        glass = ["n=1.5", "k=0", "sigma=0.001", "diffuse=none"]
+        self.quoted("surface/Fresnel", dhr(glass, 0), 3)
+        self.quoted("surface/Fresnel", dhr(glass, 56.31), 3)
+        principal = matrix([*COPPER, "diffuse=none"], 73, 73)
+        self.quoted("surface/Fresnel", principal["f22"] / principal["f00"], 3)
+        self.quoted("surface/Fresnel", principal["f23"] / principal["f00"], 3)
+        inside = matrix(["n=0.66225", "k=0", "sigma=0.1", "diffuse=none"], 54.62, 54.62)
+        self.quoted("surface/Fresnel", inside["f22"] / inside["f00"], 3)
+        self.quoted("surface/Fresnel", inside["f23"] / inside["f00"], 3)
+
+    def test_microfacets(self) -> None:
+        mirror = ["n=1", "k=1e6", "sigma=0.2", "diffuse=none"]
+        self.quoted("surface/Microfacets", matrix(mirror, 45, 45, 90)["f00"], 4)
+        hidden = matrix([*mirror, "shadowing=v-groove"], 45, 85)["f00"]
+        bare = matrix([*mirror, "shadowing=none"], 45, 85)["f00"]
+        self.quoted("surface/Microfacets", hidden, 3)
+        self.quoted("surface/Microfacets", bare, 3)
+        self.quoted("surface/Microfacets", hidden / bare, 3)
+
+    def test_rough_metal(self) -> None:
+        facets_alone = matrix([*COPPER, "diffuse=none"], 30, 40)["f00"]
+        for theta_i, theta_r in (30, 40), (40, 30):
+            f00 = matrix(COPPER, theta_i, theta_r)["f00"]
+            self.quoted("surface/BRDFTorranceSparrow", f00, 4)
+            self.quoted("surface/BRDFTorranceSparrow", f00 - facets_alone, 4)
+            self.quoted("surface/BRDFTorranceSparrow", matrix([*COPPER, "diffuse=reciprocal"], theta_i, theta_r)["f00"], 4)
+        invisible = matrix(["n=1", "k=0", "sigma=0.2"], 30, 40)
+        self.quoted("surface/BRDFTorranceSparrow", invisible["f00"], 4)
+        self.assertLess(invisible["f10"], 1e-300)
+        self.quoted("surface/BRDFTorranceSparrow", dhr(["n=1", "k=1e6", "sigma=0.2"], 0), 3)
 
     def test_plate(self) -> None:
         self.quoted("Section71", brdf(COPPER, 30, 30)[0], 3)
