@@ -4,10 +4,13 @@
 Usage: exercises_test.py MALUS.  Regression: a solution quotes what `malus` prints today, rounded as the book has it.
 Negative control: the same number with its last digit changed is not in the book.
 """
+import math
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -43,6 +46,25 @@ def brdf(parameters: list[str], theta_i: float, theta_r: float) -> tuple[float, 
 
 def dhr(parameters: list[str], theta_i: float) -> float:
     return facets(parameters, "--dhr", "--theta-i-deg", str(theta_i))["dhr"]
+
+
+def grid_excess(rays: int) -> float:
+    """Per cent of light that the trial of a sampling finds too much, for a list that begins with so many rays."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("chunky-bar-lambertian.json", "chunky-bar.obj"):
+            shutil.copy(os.path.join(ROOT, "scenes", name), folder)
+        scene = os.path.join(folder, "chunky-bar-lambertian.json")
+        with open(scene, encoding="utf-8") as file:
+            text = file.read()
+        changed = text.replace('"rays": [91, 1]', f'"rays": [{rays}, 1]')
+        if (changed == text) != (rays == 91):
+            raise AssertionError("the scene does not have 91 rays")
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write(changed)
+        note = re.search(r"shows ([\d.]+) % too much", run("render", scene, "--dry-run", "--out", os.path.join(folder, "out")))
+        if not note:
+            raise AssertionError("no note on the sampling")
+        return float(note[1])
 
 
 def zenith(*flags: str) -> tuple[float, float]:
@@ -103,6 +125,43 @@ class Solutions(unittest.TestCase):
         there, dolp = brdf(COPPER, 30, 40)
         self.quoted("Section71", there, 3)
         self.quoted("Section71", 100 * dolp, 1)
+
+    def test_states(self) -> None:
+        row = last_row(run("sky", "--wavelength-nm", "450", "--albedo", "0", "--mu0", "0.5", "--mu", "0.5", "--phi-deg", "90"))
+        total, q, u = (float(row[name]) for name in "IQU")
+        linear = math.hypot(q, u)
+        chapter = "light/CDPolarimetricMath"
+        for value in (total, abs(q), u):
+            self.quoted(chapter, value, 5)
+        self.quoted(chapter, linear / total, 3)
+        self.quoted(chapter, math.degrees(math.atan2(u, q)), 1)
+        self.quoted(chapter, math.degrees(math.atan2(u, q)) / 2, 1)
+        self.quoted(chapter, (total + linear) / 2, 4)
+        self.quoted(chapter, (total - linear) / 2, 4)
+
+    def test_sums(self) -> None:
+        self.quoted("render/Radiometry", grid_excess(91), 1)
+        self.quoted("render/Radiometry", grid_excess(21), 1)
+        flags = [flag for parameter in COPPER for flag in ("--param", parameter)]
+        row = last_row(run("brdf", "--model", "torrance-sparrow", *flags, "--theta-i-deg", "30", "--theta-r-deg", "40",
+                           "--phi-deg", "180", "--format", "csv"))
+        polarizes, turns = float(row["f10"]) / float(row["f00"]), -float(row["f32"]) / float(row["f00"])
+        self.quoted("render/Radiometry", polarizes, 3)
+        self.quoted("render/Radiometry", turns, 3)
+        self.quoted("render/Radiometry", polarizes * turns, 4)
+
+    def test_air(self) -> None:
+        light, polarized = zenith("--tau", "0.01", "--depolarization", "0", "--albedo", "0")
+        self.quoted("air/RayleighLight", light, 6)
+        self.quoted("air/RayleighLight", polarized / light, 3)
+        fluxes = [last_row(run("sky", "--tau", "0.5", "--depolarization", "0", "--albedo", albedo, "--mu0", "0.5", "--fluxes"))
+                  for albedo in ("0", "0.3")]
+        direct, black, bright = (float(fluxes[0]["flux_direct"]), *(float(row["flux_down"]) for row in fluxes))
+        factor = (direct + bright) / (direct + black)
+        for value in (direct, black, bright):
+            self.quoted("air/RayleighLight", value, 4)
+        self.quoted("air/RayleighLight", factor, 3)
+        self.quoted("air/RayleighLight", (1 - 1 / factor) / 0.3, 3)
 
     def test_glass(self) -> None:
         glass = ["n=1.5", "k=0"]
