@@ -69,6 +69,16 @@ class Solutions(unittest.TestCase):
         self.quoted("Section72", bare_dolp, 4)
         self.quoted("Section72", diffuse_dolp, 4)
 
+    def test_aluminium(self) -> None:
+        aluminium = ["n=1.304", "k=7.479", "sigma=0.2"]
+        for view in (65, 80):
+            self.quoted("Section74", 100 * brdf([*aluminium, "diffuse=none"], 5, view)[1], 1)
+            self.quoted("Section74", 100 * brdf(aluminium, 5, view)[1], 1)
+        facets = brdf([*COPPER, "diffuse=none"], 30, 40)[0]
+        there, back = brdf(COPPER, 30, 40)[0], brdf(COPPER, 40, 30)[0]
+        for value in (there, back, there - back, there - facets, back - facets):
+            self.quoted("Section74", value, 5)
+
     def test_zenith(self) -> None:
         light, polarized = zenith("--tau", "1e-6", "--depolarization", "0", "--albedo", "0")
         self.quoted("Section77", polarized / light, 1)
