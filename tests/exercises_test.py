@@ -4,6 +4,7 @@
 Usage: exercises_test.py MALUS.  Regression: a solution quotes what `malus` prints today, rounded as the book has it.
 Negative control: the same number with its last digit changed is not in the book.
 """
+import math
 import os
 import re
 import subprocess
@@ -37,6 +38,12 @@ def zenith(*flags: str) -> tuple[float, float]:
     """I and Q at the zenith with the sun 60 degrees from it."""
     row = last_row(run("sky", *flags, "--mu0", "0.5", "--mu", "1"))
     return float(row["I"]), float(row["Q"])
+
+
+def sun_zenith(time: str) -> float:
+    """Zenith angle in degrees over Rochester on the day of section 7.8."""
+    return float(last_row(run("sun", "--latitude-deg", "43.16", "--longitude-deg", "-77.61",
+                              "--time", f"2001-06-04T{time}:00-04:00"))["zenith_deg"])
 
 
 def exercises(chapter: str) -> str:
@@ -92,6 +99,16 @@ class Solutions(unittest.TestCase):
         self.quoted("Section77", bright, 4)
         # the digits that the book promises: fourteen of two sums in another order
         self.assertAlmostEqual(q_bright / q_black, 1, delta=1e-14)
+
+    def test_sun(self) -> None:
+        self.quoted("Section78", sun_zenith("13:09"), 2)
+        morning = sun_zenith("10:00")
+        self.quoted("Section78", morning, 2)
+        self.quoted("Section78", morning / 2, 2)
+        slope = math.tan(math.radians(morning / 2))
+        self.quoted("Section78", slope, 3)
+        self.quoted("Section78", math.exp(-slope**2 / (2 * 0.1**2)), 4)
+        self.quoted("Section78", math.exp(-slope**2 / (2 * 0.3**2)), 2)
 
 
 if __name__ == "__main__":
