@@ -73,6 +73,12 @@ def zenith(*flags: str) -> tuple[float, float]:
     return float(row["I"]), float(row["Q"])
 
 
+def sun_zenith(time: str) -> float:
+    """Zenith angle in degrees over Rochester on the day of section 7.8."""
+    return float(last_row(run("sun", "--latitude-deg", "43.16", "--longitude-deg", "-77.61",
+                              "--time", f"2001-06-04T{time}:00-04:00"))["zenith_deg"])
+
+
 def exercises(chapter: str) -> str:
     """The text of a chapter's exercises; the chapter as "surface/Fresnel", or by its name if it is of the thesis."""
     with open(os.path.join(ROOT, "nw", chapter if "/" in chapter else "thesis/" + chapter) + ".nw", encoding="utf-8") as file:
@@ -173,6 +179,16 @@ class Solutions(unittest.TestCase):
         self.quoted("Section72", bare_dolp, 4)
         self.quoted("Section72", diffuse_dolp, 4)
 
+    def test_aluminium(self) -> None:
+        aluminium = ["n=1.304", "k=7.479", "sigma=0.2"]
+        for view in (65, 80):
+            self.quoted("Section74", 100 * brdf([*aluminium, "diffuse=none"], 5, view)[1], 1)
+            self.quoted("Section74", 100 * brdf(aluminium, 5, view)[1], 1)
+        facets = brdf([*COPPER, "diffuse=none"], 30, 40)[0]
+        there, back = brdf(COPPER, 30, 40)[0], brdf(COPPER, 40, 30)[0]
+        for value in (there, back, there - back, there - facets, back - facets):
+            self.quoted("Section74", value, 5)
+
     def test_zenith(self) -> None:
         light, polarized = zenith("--tau", "1e-6", "--depolarization", "0", "--albedo", "0")
         self.quoted("Section77", polarized / light, 1)
@@ -186,6 +202,16 @@ class Solutions(unittest.TestCase):
         self.quoted("Section77", bright, 4)
         # the digits that the book promises: fourteen of two sums in another order
         self.assertAlmostEqual(q_bright / q_black, 1, delta=1e-14)
+
+    def test_sun(self) -> None:
+        self.quoted("Section78", sun_zenith("13:09"), 2)
+        morning = sun_zenith("10:00")
+        self.quoted("Section78", morning, 2)
+        self.quoted("Section78", morning / 2, 2)
+        slope = math.tan(math.radians(morning / 2))
+        self.quoted("Section78", slope, 3)
+        self.quoted("Section78", math.exp(-slope**2 / (2 * 0.1**2)), 4)
+        self.quoted("Section78", math.exp(-slope**2 / (2 * 0.3**2)), 2)
 
 
 if __name__ == "__main__":
