@@ -4,6 +4,7 @@
 Usage: exercises_test.py MALUS.  Regression: a solution quotes what `malus` prints today, rounded as the book has it.
 Negative control: the same number with its last digit changed is not in the book.
 """
+import math
 import os
 import re
 import subprocess
@@ -40,7 +41,7 @@ def zenith(*flags: str) -> tuple[float, float]:
 
 
 def exercises(chapter: str) -> str:
-    with open(os.path.join(ROOT, "nw", "thesis", chapter + ".nw"), encoding="utf-8") as file:
+    with open(os.path.join(ROOT, "nw", chapter if "/" in chapter else "thesis/" + chapter) + ".nw", encoding="utf-8") as file:
         return file.read().split("\\section{Exercises}", 1)[1]
 
 
@@ -82,6 +83,35 @@ class Solutions(unittest.TestCase):
         self.quoted("Section77", bright, 4)
         # the digits that the book promises: fourteen of two sums in another order
         self.assertAlmostEqual(q_bright / q_black, 1, delta=1e-14)
+
+    def test_sun(self) -> None:
+        def rochester(time: str) -> dict[str, float]:
+            row = last_row(run("sun", "--latitude-deg", "43.16", "--longitude-deg", "-77.61", "--time", time))
+            return {name: float(row[name]) for name in ("zenith_deg", "azimuth_deg", "distance_au")}
+
+        june = rochester("2001-06-21T17:12:15Z")
+        self.quoted("air/Sun", june["zenith_deg"], 2)
+        self.quoted("air/Sun", june["azimuth_deg"], 2)
+        self.quoted("air/Sun", rochester("2001-12-21T17:08:30Z")["zenith_deg"], 2)
+        self.quoted("air/Sun", rochester("2001-06-21T17:13:15Z")["azimuth_deg"], 2)
+        near, far = (rochester(f"2001-0{month}-04T17:00:00Z")["distance_au"] for month in (1, 7))
+        self.quoted("air/Sun", near, 4)
+        self.quoted("air/Sun", far, 4)
+        self.quoted("air/Sun", (far / near) ** 2, 3)
+
+    def test_sensor(self) -> None:
+        x = 0.787
+        self.assertAlmostEqual(math.sin(x) / x, 0.9, delta=5e-4)  # x has three digits
+        self.quoted("render/Sensor", 2 * x / math.pi, 3)
+        self.quoted("render/Sensor", 1000 * 2 * x / math.pi * 10 / (2 * 1000), 1)
+        blue, q_blue = zenith("--wavelength-nm", "450", "--albedo", "0")
+        red, q_red = zenith("--wavelength-nm", "700", "--albedo", "0")
+        for number in (blue, q_blue, red, q_red):
+            self.quoted("render/Sensor", number, 4)
+        self.quoted("render/Sensor", q_blue / blue, 3)
+        self.quoted("render/Sensor", q_red / red, 3)
+        self.quoted("render/Sensor", (q_blue + q_red) / (blue + red), 3)
+        self.quoted("render/Sensor", (q_blue / blue + q_red / red) / 2, 3)
 
 
 if __name__ == "__main__":
