@@ -213,6 +213,35 @@ class Solutions(unittest.TestCase):
         self.quoted("Section78", math.exp(-slope**2 / (2 * 0.1**2)), 4)
         self.quoted("Section78", math.exp(-slope**2 / (2 * 0.3**2)), 2)
 
+    def test_the_year_of_the_sun(self) -> None:
+        def rochester(time: str) -> dict[str, float]:
+            row = last_row(run("sun", "--latitude-deg", "43.16", "--longitude-deg", "-77.61", "--time", time))
+            return {name: float(row[name]) for name in ("zenith_deg", "azimuth_deg", "distance_au")}
+
+        june = rochester("2001-06-21T17:12:15Z")
+        self.quoted("air/Sun", june["zenith_deg"], 2)
+        self.quoted("air/Sun", june["azimuth_deg"], 2)
+        self.quoted("air/Sun", rochester("2001-12-21T17:08:30Z")["zenith_deg"], 2)
+        self.quoted("air/Sun", rochester("2001-06-21T17:13:15Z")["azimuth_deg"], 2)
+        near, far = (rochester(f"2001-0{month}-04T17:00:00Z")["distance_au"] for month in (1, 7))
+        self.quoted("air/Sun", near, 4)
+        self.quoted("air/Sun", far, 4)
+        self.quoted("air/Sun", (far / near) ** 2, 3)
+
+    def test_sensor(self) -> None:
+        x = 0.787
+        self.assertAlmostEqual(math.sin(x) / x, 0.9, delta=5e-4)  # x has three digits
+        self.quoted("render/Sensor", 2 * x / math.pi, 3)
+        self.quoted("render/Sensor", 1000 * 2 * x / math.pi * 10 / (2 * 1000), 1)
+        blue, q_blue = zenith("--wavelength-nm", "450", "--albedo", "0")
+        red, q_red = zenith("--wavelength-nm", "700", "--albedo", "0")
+        for number in (blue, q_blue, red, q_red):
+            self.quoted("render/Sensor", number, 4)
+        self.quoted("render/Sensor", q_blue / blue, 3)
+        self.quoted("render/Sensor", q_red / red, 3)
+        self.quoted("render/Sensor", (q_blue + q_red) / (blue + red), 3)
+        self.quoted("render/Sensor", (q_blue / blue + q_red / red) / 2, 3)
+
 
 if __name__ == "__main__":
     unittest.main()
