@@ -40,7 +40,8 @@ def zenith(*flags: str) -> tuple[float, float]:
 
 
 def exercises(chapter: str) -> str:
-    with open(os.path.join(ROOT, "nw", "thesis", chapter + ".nw"), encoding="utf-8") as file:
+    path = chapter if "/" in chapter else "thesis/" + chapter
+    with open(os.path.join(ROOT, "nw", path + ".nw"), encoding="utf-8") as file:
         return file.read().split("\\section{Exercises}", 1)[1]
 
 
@@ -82,6 +83,12 @@ class Solutions(unittest.TestCase):
         self.quoted("Section77", bright, 4)
         # the digits that the book promises: fourteen of two sums in another order
         self.assertAlmostEqual(q_bright / q_black, 1, delta=1e-14)
+
+    def test_minnaert(self) -> None:
+        law = ["--param", "reflectance=0.3", "--param", "exponent=1.3"]
+        row = last_row(run("brdf", "--model", "minnaert", *law, "--theta-i-deg", "0", "--theta-r-deg", "0",
+                           "--phi-deg", "0", "--format", "csv"))
+        self.quoted("surface/BRDFMinnaert", float(row["f00"]), 4)
 
 
 if __name__ == "__main__":
