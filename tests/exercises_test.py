@@ -242,6 +242,12 @@ class Solutions(unittest.TestCase):
         self.quoted("render/Sensor", (q_blue + q_red) / (blue + red), 3)
         self.quoted("render/Sensor", (q_blue / blue + q_red / red) / 2, 3)
 
+    def test_minnaert(self) -> None:
+        law = ["--param", "reflectance=0.3", "--param", "exponent=1.3"]
+        row = last_row(run("brdf", "--model", "minnaert", *law, "--theta-i-deg", "0", "--theta-r-deg", "0",
+                           "--phi-deg", "0", "--format", "csv"))
+        self.quoted("surface/BRDFMinnaert", float(row["f00"]), 4)
+
 
 if __name__ == "__main__":
     unittest.main()
