@@ -150,12 +150,12 @@ class Workshop(unittest.TestCase):
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
-    def weave_pdf(self) -> tuple[int, str]:
+    def weave_pdf(self, *front: str) -> tuple[int, str]:
         """(exit code, complaints) of the second renderer"""
         done = subprocess.run(
             [os.path.join(WEAVER, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
              self.theme, "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/surface/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), *front, "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -324,6 +324,15 @@ class BrokenBook(Workshop):
     def test_unknown_value(self) -> None:
         self.put("report/values.tex", "\\malusval{F3.9.brewstar}{63.43}\n")
         self.fails("nw/light/first.nw:3:", r"\val{F3.9.brewster}")
+
+    def test_values_are_set_with_powers_of_ten(self) -> None:
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("⋅", self.get("light-first.html"))
+        self.assertNotIn("3.2e-05", self.get("light-first.html"))
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05b}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
 
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
@@ -501,6 +510,12 @@ class PrintedBook(Workshop):
         self.assertIn(r"\litfardefine{ch:second}{2}{2}{chapter.2}{2}", self.get_work("far-1.tex"))
         self.assertIn(r"\litfardefine{fig:F3.9}{1.1}", self.get_work("far-2.tex"))
         self.assertRegex(self.get_work("identifiers.tex"), r"\\litidentifierentry\{reflect\\_it\}\{\\litpage\{1\}\{[^}]*\}\}")
+
+    def test_a_chapter_before_the_parts_counts_as_on_the_site(self) -> None:
+        self.put("front/rules.tex", "\\chapter{Rules}\\label{ch:rules}\nLeft is left.\n")
+        self.assertEqual(self.weave_pdf("front/rules.tex"), (0, ""))
+        for volume, label, number in ((1, "rules", 1), (1, "first", 2), (2, "second", 3)):
+            self.assertIn(rf"\newlabel{{ch:{label}}}{{{{{number}}}", self.get_work(f"malus-{volume}.aux"))
 
     def test_a_volume_that_is_too_long(self) -> None:
         with open(os.path.join(self.theme, "book.ini"), "w", encoding="utf-8") as file:

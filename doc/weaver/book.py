@@ -23,6 +23,7 @@ CITATION = re.compile(r"\\cite(?:\[[^\]]*\])?\{([^}]*)\}")
 VALUE = re.compile(r"\\val\{([^}]*)\}")
 FIGURE = re.compile(r"\\includegraphics(?:\[[^\]]*\])?\{([^}]*)\}")
 DRAWN_LINK = re.compile(r'<a href="([^"]*)"><rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"')
+SCIENTIFIC = re.compile(r"(-?\d+(?:\.\d+)?)e([+-])0*(\d+)")
 MALUSVAL = re.compile(r"\\malusval\{([^}]*)\}\{(.*)\}\s*$")
 
 
@@ -50,6 +51,14 @@ def without_comments(latex: str) -> str:
     return re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match[0]), latex)
 
 
+def power_of_ten(text: str) -> str:
+    """A number as programs print it, 3.2e-05, as print has it; any other text as it is."""
+    number = SCIENTIFIC.fullmatch(text)
+    if not number:
+        return text
+    return rf"\ensuremath{{{number[1]}\cdot10^{{{number[2].replace('+', '')}{number[3]}}}}}"
+
+
 # ---------------------------------------------------------------- what the prose refers to
 class Links:
     """Labels, citations, values and figures of all pages: each must exist."""
@@ -75,7 +84,7 @@ class Links:
                         entry = MALUSVAL.match(line)
                         if not entry:
                             raise Problem(path, number, r"expected \malusval{ID.name}{text}")
-                        values[entry[1]] = entry[2]
+                        values[entry[1]] = power_of_ten(entry[2])
         return values
 
     def find_figure(self, name: str) -> str:

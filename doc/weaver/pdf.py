@@ -195,7 +195,8 @@ class PdfBook(book.Book):
             out.append(rf"\input{{{page.name}}}")
         if not started:
             out.append(r"\mainmatter")
-        out.append(rf"\setcounter{{chapter}}{{{max((page.chapter for page in earlier), default=0)}}}")
+        # chapters are numbered through both volumes, as on the site
+        out.append(rf"\setcounter{{chapter}}{{{max((page.chapter for page in earlier or self.front), default=0)}}}")
         out.append(rf"\setcounter{{part}}{{{sum(part.volume < volume for part in self.parts)}}}")
         for part in self.parts:
             if part.volume == volume:
