@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The manual pages and completions beside what the program's help says; the README's first screen beside what runs elsewhere.
+"""The manual pages and completions beside what the program's help says; the README's first screen beside what runs elsewhere
+(nw/app/Manual.nw).
 
     manual_test.py MALUS DIRECTORY
 
