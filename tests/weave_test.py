@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see; and
+the page of a report (nw/thesis/Report.nw).
 
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
@@ -33,6 +34,7 @@ import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
 import report  # noqa: E402
+import tested  # noqa: E402
 import verdicts  # noqa: E402
 import weave  # noqa: E402
 from problems import Problem  # noqa: E402
@@ -469,7 +471,7 @@ class Search(unittest.TestCase):
             chunks = noweb.read([path])[0].chunks
         page = book.Page(name, "", "")
         page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
-        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        script = finder.index([page], tested.Wording([]), [], {chunks[0].label: ("page.html", "chunk-complain")})
         found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
         return found
 
