@@ -122,9 +122,9 @@ class Pages(unittest.TestCase):
         self.assertTrue(os.path.isfile(os.path.join(BOOK, "index.html")), f"no book in {BOOK}: make book")
 
     @unittest.skipIf(lacks(shutil.which("tidy"), "tidy"), lacks(shutil.which("tidy"), "tidy"))
-    def test_the_readme_shows_the_end_of_make(self) -> None:
+    def test_the_guide_shows_the_end_of_make(self) -> None:
         summary = {line.rstrip() for line in read(os.path.join(os.path.dirname(BOOK), "report", "summary.txt")).split("\n")}
-        shown = read(os.path.join(ROOT, "README.md")).split("    r reproduced")[1].split("    The report:")[0]
+        shown = read(os.path.join(ROOT, "doc", "guide.md")).split("    r reproduced")[1].split("    The report:")[0]
         lines = ["r reproduced" + shown.split("\n", 1)[0]] + [line[4:].rstrip() for line in shown.split("\n")[1:]]
         self.assertLessEqual({line for line in lines if line not in ("", "...")} - {"every claim: build/report/report.json"}, summary)
         self.assertNotIn(lines[-5].replace("reproduced", "produced"), summary, "the control: another line")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The manual pages and completions beside what the program's help says; the README's first screen beside what runs elsewhere.
+"""The manual pages and completions beside what the program's help says (nw/app/Manual.nw).
 
     manual_test.py MALUS DIRECTORY
 
@@ -90,39 +90,6 @@ class Manual(unittest.TestCase):
         for page in pathlib.Path(ROOT).glob("man/man1/*.1"):
             done = subprocess.run(["groff", "-man", "-ww", "-z", "-Tutf8", str(page)], capture_output=True, text=True, check=True)
             self.assertEqual(done.stderr, "", page.name)
-
-
-def readme(pattern: str) -> list[str]:
-    """The lines of the README that are shown as typed, from one that begins so to the next that is none."""
-    shown = (TOP / "README.md").read_text(encoding="utf-8").split("    " + pattern)[1].split("\n\nTwo lines put")[0]
-    return [line.removeprefix("    ") for line in (pattern + shown).split("\n") if line]
-
-
-def container(text: str) -> set[str]:
-    """The commands that a Containerfile runs."""
-    runs = re.findall(r"(?m)^RUN (.*)$", text.replace("\\\n", " "))
-    return {" ".join(command.split()) for run in runs for command in run.split("&&")}
-
-
-class FirstScreen(unittest.TestCase):
-    """What the README's first screen shows is what is run elsewhere."""
-
-    def test_the_container_runs_the_two_commands(self) -> None:
-        commands = [" ".join(line.split("#")[0].split()) for line in readme("make deb")[:2]]
-        self.assertEqual(commands[0], "make deb")
-        self.assertTrue(commands[1].startswith("apt install "))
-        text = (TOP / "Containerfile").read_text(encoding="utf-8").replace("apt install -y", "apt install")
-        self.assertLessEqual(set(commands), container(text))
-        self.assertFalse(set(commands) <= container(text.replace("make deb", "make dep")), "the control: another command")
-
-    def test_the_lines_of_python_are_those_of_the_example_and_the_package(self) -> None:
-        lines = readme("import malus")
-        self.assertTrue(lines[-1].startswith("sky.malus.plot()"), lines)
-        example = (TOP / "examples/polarized_sky.py").read_text(encoding="utf-8").split('"""\n')[-1]
-        self.assertEqual(lines, [line for line in example.split("\n") if line])
-        package = (TOP / "debian/tests/python").read_text(encoding="utf-8").split("\n")
-        self.assertLessEqual({line for line in lines if line.startswith(("import", "sky"))}, set(package))
-        self.assertFalse({lines[-1] + " "} <= set(package), "the control: another line")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see; and
+the page of a report (nw/thesis/Report.nw).
 
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
@@ -33,6 +34,7 @@ import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
 import report  # noqa: E402
+import tested  # noqa: E402
 import verdicts  # noqa: E402
 import weave  # noqa: E402
 from problems import Problem  # noqa: E402
@@ -150,12 +152,12 @@ class Workshop(unittest.TestCase):
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
-    def weave_pdf(self) -> tuple[int, str]:
+    def weave_pdf(self, *front: str) -> tuple[int, str]:
         """(exit code, complaints) of the second renderer"""
         done = subprocess.run(
             [os.path.join(WEAVER, "pdf.py"), "--out", "book.pdf", "--work", os.path.join(self.shared, "pdf"), "--book",
              self.theme, "--report", "report", "--bibliography",
-             os.path.join(ROOT, "doc", "bibliography.bib"), "nw/light/first.nw", "nw/surface/second.nw"],
+             os.path.join(ROOT, "doc", "bibliography.bib"), *front, "nw/light/first.nw", "nw/surface/second.nw"],
             cwd=self.dir, capture_output=True, text=True)
         return done.returncode, done.stderr
 
@@ -325,6 +327,38 @@ class BrokenBook(Workshop):
         self.put("report/values.tex", "\\malusval{F3.9.brewstar}{63.43}\n")
         self.fails("nw/light/first.nw:3:", r"\val{F3.9.brewster}")
 
+    def test_values_are_set_with_powers_of_ten(self) -> None:
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("⋅", self.get("light-first.html"))
+        self.assertNotIn("3.2e-05", self.get("light-first.html"))
+        self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05b}\n")
+        self.assertEqual(self.weave()[0], 0)
+        self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
+
+    def test_tables_of_reference_are_what_the_program_says(self) -> None:
+        flags = [{"name": "--help"}, {"name": "--step", "placed": False, "text": "a step, 1e-6 to -2e3; with --far", "required": True,
+                                      "several": False, "value": "TEXT", "choices": ["near"]}]
+        grey = {"name": "grey", "parameters": [{"name": "albedo", "meaning": "its share", "unit": "%", "range": "0 to 1", "default": "0.5",
+                                                "optional": False}]}
+        self.put("report/program.json", json.dumps({"commands": [{"name": "walk", "flags": flags}], "models": [grey], "skies": []}))
+        self.put("report/schema.json", json.dumps({
+            "properties": {"eye": {"description": "what sees", "properties": {"pupil_mm": {"$ref": "#/definitions/size"}}}},
+            "definitions": {"size": {"description": "a size in mm"}}, "required": ["eye"]}))
+        tables = "\n\n\\options{walk}\n\n\\parameters{grey}\n\n\\keys{eye size}\n"
+        self.put("nw/surface/second.nw", SECOND + tables)
+        self.assertEqual(self.weave(), (0, ""))
+        page = re.sub(r"<[^>]*>|\s+", " ", self.get("surface-second.html"))
+        for words in ("--step TEXT", "a step,", "; with --far : near ; required", "albedo its share [%] 0 to 1 0.5", "eye what sees; required",
+                      "pupil_mm a size in mm", "size a size in mm"):
+            self.assertIn(words, re.sub(" +", " ", page))
+        self.assertNotIn("1e-6", page)
+        self.assertNotIn("--help", page)
+
+    def test_a_table_of_reference_that_the_program_does_not_have(self) -> None:
+        self.put("nw/surface/second.nw", SECOND + "\n\\options{walk}\n")
+        self.fails("nw/surface/second.nw:13:", "walk", "does not have")
+
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
         self.fails("nw/light/first.nw:19:", "F3.9/fresnel")
@@ -437,7 +471,7 @@ class Search(unittest.TestCase):
             chunks = noweb.read([path])[0].chunks
         page = book.Page(name, "", "")
         page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
-        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        script = finder.index([page], tested.Wording([]), [], {chunks[0].label: ("page.html", "chunk-complain")})
         found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
         return found
 
@@ -501,6 +535,12 @@ class PrintedBook(Workshop):
         self.assertIn(r"\litfardefine{ch:second}{2}{2}{chapter.2}{2}", self.get_work("far-1.tex"))
         self.assertIn(r"\litfardefine{fig:F3.9}{1.1}", self.get_work("far-2.tex"))
         self.assertRegex(self.get_work("identifiers.tex"), r"\\litidentifierentry\{reflect\\_it\}\{\\litpage\{1\}\{[^}]*\}\}")
+
+    def test_a_chapter_before_the_parts_counts_as_on_the_site(self) -> None:
+        self.put("front/rules.tex", "\\chapter{Rules}\\label{ch:rules}\nLeft is left.\n")
+        self.assertEqual(self.weave_pdf("front/rules.tex"), (0, ""))
+        for volume, label, number in ((1, "rules", 1), (1, "first", 2), (2, "second", 3)):
+            self.assertIn(rf"\newlabel{{ch:{label}}}{{{{{number}}}", self.get_work(f"malus-{volume}.aux"))
 
     def test_a_volume_that_is_too_long(self) -> None:
         with open(os.path.join(self.theme, "book.ini"), "w", encoding="utf-8") as file:
