@@ -31,6 +31,7 @@ import listing  # noqa: E402
 import names  # noqa: E402
 import noweb  # noqa: E402
 import problems  # noqa: E402
+import reference  # noqa: E402
 import references  # noqa: E402
 import report  # noqa: E402
 import verdicts  # noqa: E402
@@ -588,6 +589,57 @@ class Claims(unittest.TestCase):
     def test_negative_control_an_item_that_is_not_there(self) -> None:
         with self.assertRaisesRegex(problems.Problems, "no item of the report"):
             self.table(r"\claims{F2}")
+
+
+class Tables(unittest.TestCase):
+    """The tables of options and keys, of a program that prints what it is told to."""
+
+    COMMANDS = {"commands": [{"name": "sun", "flags": [
+        {"name": "--help", "placed": False, "text": "help", "required": False, "several": False, "value": "", "choices": []},
+        {"name": "--time", "placed": False, "text": "a time", "required": True, "several": False, "value": "TEXT", "choices": []},
+        {"name": "--order", "placed": False, "text": "of rows", "required": False, "several": True, "value": "TEXT", "choices": ["a", "b"]}]}]}
+    SCHEMA = {"definitions": {"count": {"description": "a whole number"},
+                              "spectrum": {"description": "a spectrum", "properties": {"values": {}, "wavelength_nm": {}}}},
+              "properties": {
+                  "sensor": {"description": "a camera", "required": ["width"],
+                             "properties": {"width": {"$ref": "#/definitions/count"},
+                                            "lens": {"properties": {"k1": {"description": "bends"}}}}},
+                  "paint": {"additionalProperties": {"properties": {"n": {"$ref": "#/definitions/spectrum"}}}}}}
+
+    def table(self, line: str, program: bool = True) -> str:
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "malus")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(f"#!/usr/bin/python3\nimport sys\nprint({json.dumps(self.COMMANDS)!r} if sys.argv[1] == '--describe' else "
+                           f"{json.dumps(self.SCHEMA)!r})\n")
+            os.chmod(path, 0o700)
+            page = book.Page("one", "one.nw", f"Text.\n{line}\nText.")
+            reference.Reference(path if program else "").substitute(page)
+        return page.latex
+
+    def test_an_option_is_a_row_and_the_page_keeps_its_lines(self) -> None:
+        latex = self.table(r"\options{sun}")
+        self.assertEqual(latex.count("\n"), 2)
+        self.assertIn(r"\texttt{-{}-{}time} TEXT & a time (required) \\", latex)
+        self.assertIn(r"a\textbar{}b & of rows (may be repeated) \\", latex)
+        self.assertNotIn("help", latex)
+
+    def test_a_key_is_a_row_with_the_description_of_its_kind(self) -> None:
+        latex = self.table(r"\keys{sensor paint -sensor.lens}")
+        self.assertIn(r"sensor.\allowbreak{}width} & a whole number (required) \\", latex)
+        self.assertIn(r"paint.\allowbreak{}NAME.\allowbreak{}n} & a spectrum \\", latex)
+        self.assertNotIn("k1", latex)
+        self.assertNotIn("values", latex)
+        self.assertIn("bends", self.table(r"\keys{sensor.lens}"))
+
+    def test_without_a_program_a_sentence_is_left(self) -> None:
+        self.assertIn("malus sun -{}-help", self.table(r"\options{sun}", program=False))
+
+    def test_negative_control_a_command_and_a_key_that_are_not_there(self) -> None:
+        with self.assertRaisesRegex(problems.Problems, "no command of the program"):
+            self.table(r"\options{moon}")
+        with self.assertRaisesRegex(problems.Problems, "no key of a scene"):
+            self.table(r"\keys{sensors}")
 
 
 class Tangled(unittest.TestCase):

@@ -13,6 +13,7 @@ import contents
 import latexml
 import names
 import noweb
+import reference
 import references
 import verdicts
 from problems import Problem, Problems, stop_if_any
@@ -185,6 +186,7 @@ class Book:
         self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
         self.verdicts = verdicts.Verdicts(options.report, options.inventory)
+        self.reference = reference.Reference(options.program)
         self.parts: list[Part] = []
         self.front: list[Page] = []
         self.back: list[Page] = []
@@ -256,6 +258,7 @@ class Book:
         if re.search(r"^\\inventory$", page.latex, re.MULTILINE):
             self.links.inventory = page
         self.verdicts.substitute(page, self.chapters, self.pages())
+        self.reference.substitute(page)
         self.links.substitute(page)
 
     def pages(self) -> list[Page]:
@@ -271,6 +274,7 @@ def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     arguments.add_argument("--drawn", default="", help="the folder of the figures that the build draws of the chapters")
     arguments.add_argument("--live", default="", help="the program of the live figures; without it they are left out")
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
+    arguments.add_argument("--program", default="", help="the program, whose options and keys the book tabulates")
     arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")
     arguments.add_argument("chapters", nargs="+")
     try:
