@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see; and
+the page of a report (nw/thesis/Report.nw).
 
 Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
@@ -31,9 +32,9 @@ import listing  # noqa: E402
 import names  # noqa: E402
 import noweb  # noqa: E402
 import problems  # noqa: E402
-import reference  # noqa: E402
 import references  # noqa: E402
 import report  # noqa: E402
+import tested  # noqa: E402
 import verdicts  # noqa: E402
 import weave  # noqa: E402
 from problems import Problem  # noqa: E402
@@ -335,6 +336,29 @@ class BrokenBook(Workshop):
         self.assertEqual(self.weave()[0], 0)
         self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
 
+    def test_tables_of_reference_are_what_the_program_says(self) -> None:
+        flags = [{"name": "--help"}, {"name": "--step", "placed": False, "text": "a step, 1e-6 to -2e3; with --far", "required": True,
+                                      "several": False, "value": "TEXT", "choices": ["near"]}]
+        grey = {"name": "grey", "parameters": [{"name": "albedo", "meaning": "its share", "unit": "%", "range": "0 to 1", "default": "0.5",
+                                                "optional": False}]}
+        self.put("report/program.json", json.dumps({"commands": [{"name": "walk", "flags": flags}], "models": [grey], "skies": []}))
+        self.put("report/schema.json", json.dumps({
+            "properties": {"eye": {"description": "what sees", "properties": {"pupil_mm": {"$ref": "#/definitions/size"}}}},
+            "definitions": {"size": {"description": "a size in mm"}}, "required": ["eye"]}))
+        tables = "\n\n\\options{walk}\n\n\\parameters{grey}\n\n\\keys{eye size}\n"
+        self.put("nw/surface/second.nw", SECOND + tables)
+        self.assertEqual(self.weave(), (0, ""))
+        page = re.sub(r"<[^>]*>|\s+", " ", self.get("surface-second.html"))
+        for words in ("--step TEXT", "a step,", "; with --far : near ; required", "albedo its share [%] 0 to 1 0.5", "eye what sees; required",
+                      "pupil_mm a size in mm", "size a size in mm"):
+            self.assertIn(words, re.sub(" +", " ", page))
+        self.assertNotIn("1e-6", page)
+        self.assertNotIn("--help", page)
+
+    def test_a_table_of_reference_that_the_program_does_not_have(self) -> None:
+        self.put("nw/surface/second.nw", SECOND + "\n\\options{walk}\n")
+        self.fails("nw/surface/second.nw:13:", "walk", "does not have")
+
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
         self.fails("nw/light/first.nw:19:", "F3.9/fresnel")
@@ -447,7 +471,7 @@ class Search(unittest.TestCase):
             chunks = noweb.read([path])[0].chunks
         page = book.Page(name, "", "")
         page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
-        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        script = finder.index([page], tested.Wording([]), [], {chunks[0].label: ("page.html", "chunk-complain")})
         found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
         return found
 
@@ -589,57 +613,6 @@ class Claims(unittest.TestCase):
     def test_negative_control_an_item_that_is_not_there(self) -> None:
         with self.assertRaisesRegex(problems.Problems, "no item of the report"):
             self.table(r"\claims{F2}")
-
-
-class Tables(unittest.TestCase):
-    """The tables of options and keys, of a program that prints what it is told to."""
-
-    COMMANDS = {"commands": [{"name": "sun", "flags": [
-        {"name": "--help", "placed": False, "text": "help", "required": False, "several": False, "value": "", "choices": []},
-        {"name": "--time", "placed": False, "text": "a time", "required": True, "several": False, "value": "TEXT", "choices": []},
-        {"name": "--order", "placed": False, "text": "of rows", "required": False, "several": True, "value": "TEXT", "choices": ["a", "b"]}]}]}
-    SCHEMA = {"definitions": {"count": {"description": "a whole number"},
-                              "spectrum": {"description": "a spectrum", "properties": {"values": {}, "wavelength_nm": {}}}},
-              "properties": {
-                  "sensor": {"description": "a camera", "required": ["width"],
-                             "properties": {"width": {"$ref": "#/definitions/count"},
-                                            "lens": {"properties": {"k1": {"description": "bends"}}}}},
-                  "paint": {"additionalProperties": {"properties": {"n": {"$ref": "#/definitions/spectrum"}}}}}}
-
-    def table(self, line: str, program: bool = True) -> str:
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "malus")
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(f"#!/usr/bin/python3\nimport sys\nprint({json.dumps(self.COMMANDS)!r} if sys.argv[1] == '--describe' else "
-                           f"{json.dumps(self.SCHEMA)!r})\n")
-            os.chmod(path, 0o700)
-            page = book.Page("one", "one.nw", f"Text.\n{line}\nText.")
-            reference.Reference(path if program else "").substitute(page)
-        return page.latex
-
-    def test_an_option_is_a_row_and_the_page_keeps_its_lines(self) -> None:
-        latex = self.table(r"\options{sun}")
-        self.assertEqual(latex.count("\n"), 2)
-        self.assertIn(r"\texttt{-{}-{}time} TEXT & a time (required) \\", latex)
-        self.assertIn(r"a\textbar{}b & of rows (may be repeated) \\", latex)
-        self.assertNotIn("help", latex)
-
-    def test_a_key_is_a_row_with_the_description_of_its_kind(self) -> None:
-        latex = self.table(r"\keys{sensor paint -sensor.lens}")
-        self.assertIn(r"sensor.\allowbreak{}width} & a whole number (required) \\", latex)
-        self.assertIn(r"paint.\allowbreak{}NAME.\allowbreak{}n} & a spectrum \\", latex)
-        self.assertNotIn("k1", latex)
-        self.assertNotIn("values", latex)
-        self.assertIn("bends", self.table(r"\keys{sensor.lens}"))
-
-    def test_without_a_program_a_sentence_is_left(self) -> None:
-        self.assertIn("malus sun -{}-help", self.table(r"\options{sun}", program=False))
-
-    def test_negative_control_a_command_and_a_key_that_are_not_there(self) -> None:
-        with self.assertRaisesRegex(problems.Problems, "no command of the program"):
-            self.table(r"\options{moon}")
-        with self.assertRaisesRegex(problems.Problems, "no key of a scene"):
-            self.table(r"\keys{sensors}")
 
 
 class Tangled(unittest.TestCase):
