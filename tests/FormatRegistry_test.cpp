@@ -213,7 +213,7 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
             "command line: --formats: is now called --write; write --write\n");
   const Outcome twice = malusIn(scratch.path, "render s.json --out o --write exr,exr");
   EXPECT_EQ(twice.code, 2);
-  EXPECT_NE(twice.err.find("names exr twice"), std::string::npos) << twice.err;
+  EXPECT_NE(twice.err.find("gives exr twice"), std::string::npos) << twice.err;
   EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
 }
 

@@ -100,12 +100,12 @@ TEST(SpectralLibrariesIdentity, ASceneTakesThem) {
             std::string::npos);  // it belongs to what the picture was made of
   const Outcome gap = scene("ChapterM_Minerals/" + usgs_name, "425, 560");
   EXPECT_EQ(gap.code, 2);
-  EXPECT_NE(
-      gap.err.find(usgs_name +
-                   ":5: reflectance = 500 to 650 nm: is a gap of deleted channels, but the "
-                   "band at 560 "
-                   "nm needs; leave out the band, or give another spectrum of the material"),
-      std::string::npos)
+  EXPECT_NE(gap.err.find(
+                usgs_name +
+                ":5: reflectance = 500 to 650 nm: is a gap of deleted channels, but the "
+                "band at 560 "
+                "nm needs them; leave out the band, or give another spectrum of the material"),
+            std::string::npos)
       << gap.err;
   const Outcome beyond = scene("oak.txt", "450, 800");
   EXPECT_EQ(beyond.code, 2);
