@@ -2,13 +2,13 @@
 """The woven book, looked at from outside: book_test.py [BOOK [HEADERS]]; default build/book and generated/malus.
 
 Each page must be valid HTML, fit a phone, a tablet and a desk without sideways scrolling, and leave the browser's
-console silent; its colours must be told apart in the light and in the dark; every public name of every header must
-stand in the index with a description; every item of the inventory must be reachable from the last part, and every test
+console silent; its colours must be distinguishable in the light and the dark theme; every public name of every header
+must be in the index with a description; every item of the inventory must be reachable from the last part, and every test
 from a chapter.
 (Broken links and anchors, and what LaTeXML complains of, stop the weaving itself.)
 
-What judges the HTML is tidy: it knows which element may stand in which, as a mere parser does not, and reads the whole
-book in seconds. The negative controls at the end spoil one thing each.
+The HTML is checked by tidy, which verifies the nesting of elements, as a mere parser does not, and reads the whole book
+in seconds. The negative controls at the end spoil one thing each.
 """
 import csv
 import glob
@@ -28,9 +28,9 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BOOK = os.path.join(ROOT, "build", "book")
 HEADERS = os.path.join(ROOT, "generated", "malus")
 WIDTHS = (360, 800, 1400)
-LEAST_CONTRAST = 4.5  # of text on its ground, as WCAG 2 wants it at level AA
+LEAST_CONTRAST = 4.5  # of text on its ground, as WCAG 2 requires at level AA
 
-# What tidy 5.6 says of valid pages: it does not know two attributes that the standards have since, nor a drawing's own
+# Messages of tidy 5.6 about valid pages: it lacks two attributes of newer standards, and those of drawings
 # style and links; and empty elements that carry a meaning by their class are not errors.
 EXPLAINED = re.compile(r'<math> proprietary attribute "alttext"|<a> proprietary attribute "(aria-current|href)"'
                        r"|trimming empty <span>|moved <style> tag to <head>")
@@ -51,7 +51,7 @@ def read(path: str) -> str:
 
 
 def invalid(paths: list[str]) -> list[str]:
-    """What tidy finds wrong with pages."""
+    """The problems that tidy finds in pages."""
     done = subprocess.run(["tidy", "-quiet", "-errors", "--gnu-emacs", "yes", "--show-warnings", "yes", *paths],
                           capture_output=True, text=True)
     return [line for line in done.stderr.splitlines() if line.strip() and not EXPLAINED.search(line)]
@@ -130,7 +130,7 @@ def unshown(sources: dict[str, str], book: dict[str, str]) -> list[str]:
 
 
 class Pages(unittest.TestCase):
-    """What can be seen without a browser."""
+    """Tests without a browser."""
 
     def test_the_book_is_there(self) -> None:
         self.assertTrue(os.path.isfile(os.path.join(BOOK, "index.html")), f"no book in {BOOK}: make book")
@@ -180,7 +180,7 @@ class Pages(unittest.TestCase):
         self.assertEqual([item for item in items if not leads.get(item)], [])
 
 
-# what sticks out of the window and cannot be scrolled where it stands
+# elements that extend beyond the window and cannot be scrolled in place
 OVERFLOW = """(() => {
   const page = document.documentElement, width = page.clientWidth;
   if (page.scrollWidth <= width) return "";
@@ -204,7 +204,7 @@ class InABrowser(unittest.TestCase):
         cls.addClassCleanup(cls.browser.__exit__)
 
     def amiss(self, path: str) -> list[str]:
-        """What is wrong with a page, at any width."""
+        """The problems of a page, at any width."""
         self.browser.size(WIDTHS[0])
         self.browser.open("file://" + path)
         out = []
