@@ -1,4 +1,4 @@
-// The rough metal (nw/surface/BRDFTorranceSparrow.nw) against field vectors, std::complex and
+// The rough metal (nw/surface/BRDFTorranceSparrow.nw, FacetIntegral.nw) against field vectors, std::complex and
 // 4x4 algebra.
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
