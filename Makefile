@@ -8,7 +8,7 @@ JOBS   ?= $(shell nproc)
 GENERATOR = $(if $(shell command -v ninja),-G Ninja)
 CONFIGURE = $(GENERATOR) $(if $(CI),-DMALUS_WERROR=ON)
 
-# What Debian 12 calls the things we stand on: to build and run; to weave the book, and to test its weaver.
+# The Debian 12 packages that we need: to build and run; to weave the book, and to test its weaver.
 # The scripts name /usr/bin/python3, for which Debian's modules are installed: another Python may come first in PATH.
 PROGRAM := g++ cmake ninja-build noweb python3 python3-jinja2 gnuplot-nox libeigen3-dev libfmt-dev nlohmann-json3-dev \
            libcli11-dev libboost-dev librandom123-dev libgtest-dev librapidcheck-dev libbenchmark-dev \
@@ -24,7 +24,7 @@ BROWSER := chromium
 # what compiles the live figures of the book; without it the static figures stay
 LIVE    := emscripten
 
-# What the book on paper wants besides: asked for by make pdf, and by the tests, which can do without.
+# Further packages for the book on paper: make pdf requires them, and the tests use them if they are installed.
 PAPER   := texlive-luatex texlive-latex-recommended fonts-dejavu-core librsvg2-bin
 
 .PHONY: all prose test book pdf site reproduce bench bench-build format format-check lint dist install deb wheel deb-twice ladder sanitize sanitize-core tsan mutants clang coverage fuzz soak cluster-test fresh-machine clean help
@@ -123,7 +123,7 @@ lint: ## check types, names and style of the Python (module, weaver, tests, scen
 	@pycodestyle --config doc/weaver/setup.cfg $(shell git ls-files '*.py')
 	@pylint --rcfile=doc/weaver/setup.cfg --score=no $(shell git ls-files '*.py')
 
-# SITE=no: without what there is to read, as pip wants it
+# SITE=no: without the site, as pip needs it
 dist: $(if $(filter no,$(SITE)),need-program,site) $(BUILD)/CMakeCache.txt ## a source archive with the tangled C++ and the site inside (SITE=no: the sources alone)
 	@SITE=$(if $(filter no,$(SITE)),,$(CURDIR)/$(BUILD)) cmake --build $(BUILD) -j $(JOBS) --target dist
 

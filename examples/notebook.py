@@ -1,6 +1,6 @@
 """A walk through malus in Python, cell by cell: a surface, its measurement in silico, a sky, a picture.
 
-The marks %% are those by which editors and Jupyter (jupytext) tell cells apart.
+By the marks %% editors and Jupyter (jupytext) separate cells.
 """
 # %% What does copper do to light? One call for a hundred wavelengths, a line of the specular plane for each.
 import matplotlib

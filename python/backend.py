@@ -26,12 +26,12 @@ DATA = ("scenes", "validation")
 
 
 def said(*words: str) -> str:
-    """What a command prints."""
+    """The output of a command."""
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout
 
 
 def version() -> str:
-    """The project's, which CMakeLists.txt knows."""
+    """The project's version, from CMakeLists.txt."""
     found = re.search(r"^project\(malus VERSION (\S+)", (TOP / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)
     assert found
     return found[1]
@@ -78,7 +78,7 @@ def from_debian(libraries: list[pathlib.Path]) -> tuple[dict[str, pathlib.Path],
 
 
 def content(root: pathlib.Path) -> dict[str, pathlib.Path]:
-    """What the wheel holds, by its name there, from a tree that make install has made."""
+    """The files of the wheel, by their names there, from a tree of make install."""
     module = next(root.rglob("malus/_malus*.so"))
     library = next(path for path in root.rglob("libmalus.so.0") if "glibc-hwcaps" not in path.parts).parent
     share = root.joinpath(*library.relative_to(root).parts[:-1], "share", "malus")
@@ -86,7 +86,7 @@ def content(root: pathlib.Path) -> dict[str, pathlib.Path]:
     plugins = ("libmalus_netcdf.so", "libmalus_images.so", "libmalus_meshes.so", "libmalus_terrain.so")
     ours = [path for name in ("libmalus.so.0", "libmalus_scenes.so.0", *plugins) for path in library.rglob(name)]
     files.update({f"malus/lib/{path.relative_to(library)}": path for path in ours})
-    # what writes netCDF stands on HDF5 and its compressors, what reads images on OpenImageIO; each is loaded only where these are there
+    # the writer of netCDF needs HDF5 and its compressors, the reader of images OpenImageIO; each is loaded only where these are installed
     debian, licences = from_debian([module, *(path for path in ours if path.name not in plugins)])
     files.update({f"malus/lib/malus/{name}": path for name, path in debian.items()})
     for folder in DATA:
@@ -111,7 +111,7 @@ def pack(root: pathlib.Path, directory: pathlib.Path) -> str:
     name = f"malus-{version()}-{tag()}.whl"
     directory.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(directory / name, "w", zipfile.ZIP_DEFLATED) as wheel:
-        # a zip's clock begins in 1980; here it stands there. RECORD comes last, as the format advises
+        # a zip's clock begins in 1980; we use that moment. RECORD comes last, as the format advises
         for part in sorted(parts, key=lambda part: (part.endswith("/RECORD"), part)):
             entry = zipfile.ZipInfo(part)
             entry.external_attr = 0o100644 << 16

@@ -5,7 +5,7 @@
     malus render scenes/parking-lot.json
 
 Chapter 2 of the thesis plans a simple outdoor scene, "for example a parking lot", as its second step of validation. This is one,
-with the surfaces that a polarimeter tells apart: asphalt and paint on it, cars (metal, lacquer, glass, rubber), a building with a
+with the surfaces that a polarimeter distinguishes: asphalt and paint on it, cars (metal, lacquer, glass, rubber), a building with a
 glass front, a pond with waves, grass blade by blade, and trees leaf by leaf. It is invented, not surveyed.
 
 Needs Python 3 and nothing else. The same seed gives the same files: all chance comes from random.Random(seed), one generator a mesh,

@@ -170,7 +170,8 @@ def mesh_of(kind: str) -> str:
 
 
 # ---------------------------------------------------------------- the scene
-# What a material is to heat: conductivity W/(m K), density kg/m^3, specific heat J/(kg K), thickness m (None: a half space), temperature K of
+# Thermal properties of a material: conductivity W/(m K), density kg/m^3, specific heat J/(kg K), thickness m (None: a half space),
+# temperature K of
 # the back (None: no heat passes it). Matter from ISO 10456:2007, table 3, but for leaves, which are four fifths water and as thick as leaves
 # (they evaporate nothing here, and so are warmer than real ones), and for windows: the glass of two panes with the thermal resistance of the
 # air between them, 0.17 m^2 K/W.

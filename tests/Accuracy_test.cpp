@@ -99,7 +99,8 @@ TEST(AccuracyInvariant, NormalBatchesMeetTheAim) {
   }
 }
 
-// The example of the chapter, but for an aim that leaves no whole number: 1.4 * 0.01 / (2 * 0.0101^2) = 68.6.
+// The example of the chapter, with an aim that gives no whole number: 1.4 * 0.01 / (2 *
+// 0.0101^2) = 68.6.
 TEST(AccuracyIdentity, BatchesNeededByHand) {
   // eight batches that scatter by a tenth about 1, in each half
   HalvedMeans means(1, first);
@@ -108,7 +109,7 @@ TEST(AccuracyIdentity, BatchesNeededByHand) {
     means.add(b, std::array{b / 2 % 2 ? 1 + step : 1 - step, 0.0, 0.0, 0.0}, 1);
   EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.0101}, 1000), (std::array<std::size_t, 2>{69, 69}));
   EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.2}, 1000), (std::array<std::size_t, 2>{8, 8}));
-  // a ray a batch: 50 rays are 25 batches for each half, and 3 are no reason to have less than the first
+  // a ray a batch: 50 rays are 25 batches for each half, and 3 must not give fewer than the first
   EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.01}, 50), (std::array<std::size_t, 2>{25, 25}));
   EXPECT_EQ(neededOf(means, {Aim::Of::s0, 0.01}, 3), (std::array<std::size_t, 2>{8, 8}));
   // no polarisation, no light: nothing to be sure of
@@ -245,7 +246,7 @@ TEST(AccuracyInvariant, AStoppedRenderIsResumedToTheSameBits) {
   EXPECT_EQ(place.file("a/s.error.img"), place.file("b/s.error.img"));
 }
 
-// What the record says of the errors is what the cubes hold; a pixel without rays left is told on the screen.
+// The record's errors are those of the cubes; a pixel without rays left is reported on the screen.
 TEST(AccuracyIdentity, TheRecordTellsWhereTheAimWasMissed) {
   const Workplace place(copper());
   const Outcome outcome = place.malus("render s.json --until 0.5% --at-most 2000 --out a");
@@ -277,7 +278,7 @@ TEST(AccuracyIdentity, TheRecordTellsWhereTheAimWasMissed) {
     EXPECT_LE(truth.data[p * channels.size() + rays], 2200) << "a tenth for rays that vary";
 }
 
-// The example of the chapter: 4 tiles left, 10 seconds, 1 for first batches, 3 wanted for the rest.
+// The example of the chapter: 4 tiles left, 10 seconds, 1 for first batches, 3 needed for the rest.
 TEST(AccuracyIdentity, TimeIsDealtByHand) {
   double now = 0;
   TimeLimit limit(14, 6, 1, [&] { return now; });
@@ -321,7 +322,7 @@ TEST(AccuracyInvariant, ScatteredTilesUseTheTimeThatThereIs) {
   EXPECT_EQ(secondsOf(mixed, 100), 400) << "first batches are not cut";
 }
 
-// The pixels of the test above, in tiles of 250 that get half of the batches that they want.
+// The pixels of the test above, in tiles of 250 that get half of the batches that they need.
 TEST(AccuracyInvariant, TimeThatLacksLeavesTheMeanWhereItIs) {
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> uniform;
@@ -370,9 +371,8 @@ TEST(AccuracyInvariant, MinutesCutBatchesAndNothingElse) {
     const Outcome outcome =
         place.malus(render + fmt::format("--at-most {} --out {}", at_most, out));
     ASSERT_EQ(outcome.code, 0);
-    EXPECT_EQ(
-        outcome.err.find("that were allowed, since the first 8 batches") != outcome.err.npos,
-        std::string(out) == "none")
+    EXPECT_EQ(outcome.err.find("allowed, because the first 8 batches") != outcome.err.npos,
+              std::string(out) == "none")
         << outcome.err;
   }
   EXPECT_EQ(place.file("first/s.img"), place.file("none/s.img"));
@@ -392,23 +392,24 @@ TEST(AccuracyIdentity, WhatCannotBeIsRefusedWithTheRemedy) {
       {"s.json --until 0", "--until = 0: is not between 0 and 1; give 1% or 0.01"},
       {"s.json --until -1%", "--until = -1%: is not between 0 and 1"},
       {"s.json --until 100%", "is not between 0 and 1"},
-      {"s.json --until dolp=1%", "--until = dolp=1%: is no accuracy; give 1% or 0.01 for S0"},
+      {"s.json --until dolp=1%",
+       "--until = dolp=1%: is not an accuracy; give 1% or 0.01 for "
+       "S0"},
       {"s.json --until nan", "is not between 0 and 1"},
-      {"s.json --until little", "is no accuracy"},
+      {"s.json --until little", "is not an accuracy"},
       {"s.json --until 1% --batches 6", "--batches = 6: is too few, or odd, for --until"},
       {"s.json --until 1% --batches 9", "give an even number from 8 on"},
-      {"s.json --until 1% --at-most 0", "--at-most = 0: is no number of rays"},
-      {"s.json --at-most 100", "--at-most = 100: is of no use without --until"},
-      {"s.json --until 1% --at-most 0min",
-       "--at-most = 0min: is no time to render in; give min"},
+      {"s.json --until 1% --at-most 0", "--at-most = 0: is not a number of rays"},
+      {"s.json --at-most 100", "--at-most = 100: has no effect without --until"},
+      {"s.json --until 1% --at-most 0min", "--at-most = 0min: is not a time; give min"},
       {"s.json --until 1% --at-most xmin", "--at-most"},
       {"s.json --until 1% --at-most infmin", "--at-most"},
       {"s.json --until 1% --at-most 1min,2min",
-       "limits the same twice; give one number of rays"},
-      {"s.json --until 1% --at-most 3,4", "limits the same twice"},
-      {"s.json --until 1% --at-most 10m", "--at-most = 10m: is no number of rays"},
+       "gives the same limit twice; give one number of rays"},
+      {"s.json --until 1% --at-most 3,4", "gives the same limit twice"},
+      {"s.json --until 1% --at-most 10m", "--at-most = 10m: is not a number of rays"},
       {"grid.json --until 1%",
-       "--until = 1%: would err alike in each batch, because the "
+       "--until = 1%: would make the same error in each batch, because the "
        "scene's sampling is grid-rotated; set radiometry.sampling"}};
   for (const auto& [arguments, words] : cases) {
     const Outcome outcome = place.malus("render " + arguments + " --out x");

@@ -91,7 +91,7 @@ double largestDeviation(const std::vector<AirLayer>& layers, double depth, doubl
 }
 }  // namespace
 
-// 1e-8 is what the chapter promises.
+// The chapter promises 1e-8.
 TEST(AddingDoublingInvariant, FlatLinesOfSightAgreeOverTheGrid) {
   const auto air = [](double depth) {
     return std::vector<AirLayer>{{{rayleighScatterer(0.03), depth}}};
@@ -130,7 +130,8 @@ TEST(AddingDoublingInvariant, AGrazingSunKeepsTheBalance) {
     }
 }
 
-// A trace of aerosol changes next to nothing: single scattering in a depth t adds a_1 t / (4 mu) to the radiance, for 1e-10
+// A trace of aerosol changes almost nothing: single scattering in a depth t adds a_1 t / (4 mu)
+// to the radiance, for 1e-10
 // and mu = 0.02 some 1e-9 (1e-9 of aerosol would itself add more than is allowed). Only the harmonics that air has.
 TEST(AddingDoublingInvariant, ATraceOfAerosolAnywhereChangesNothing) {
   const Scatterer air = rayleighScatterer(0.03);
@@ -296,7 +297,8 @@ TEST(AddingDoublingInvariant, SunAndViewerMayBeExchanged) {
   }
 }
 
-// A layer that rounding cannot tell from a boundary is none, wherever it lies; one that it can is there.
+// A layer so thin that rounding cannot distinguish it from a boundary is ignored, wherever it
+// is; a thicker one counts.
 TEST(AddingDoublingInvariant, ALayerThinnerThanRoundingIsLeftOut) {
   const Scatterer air = rayleighScatterer(0.03);
   const Particles sky{air, 0.3, 1}, trace{air, 1e-18, 1}, soot{air, 1e-3, 0};

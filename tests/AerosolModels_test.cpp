@@ -186,7 +186,7 @@ TEST(AerosolSkyInvariant, AGasBelowAllOtherAirDimsTheSkyByBeersLaw) {
   }
 }
 
-// An atmosphere by name brings its pressure and its ozone, which the sun shows by Beer's law.
+// An atmosphere by name has its pressure and its ozone, which the sun shows by Beer's law.
 TEST(AerosolSkyIdentity, AnAtmosphereBringsPressureAndOzone) {
   const double nm = 600;
   const auto depth = [&](const json& sky) {
@@ -206,7 +206,8 @@ TEST(AerosolSkyIdentity, AnAtmosphereBringsPressureAndOzone) {
   EXPECT_GT(ozone, 0.02) << "control";
 }
 
-// A cloud between two heights: the camera below it sees it grey, the camera's air knows its heights.
+// A cloud between two heights: for the camera below it is grey, and the camera's air has its
+// heights.
 TEST(AerosolSkyInvariant, ACloudIsALayerOfDroplets) {
   const json cloud{{"particles", "water-cloud"},
                    {"radius_um", 6},
@@ -248,7 +249,9 @@ TEST(AerosolSkyIdentity, WhatIsWrongWithAnAirIsSaidAtItsPlace) {
   has(aerosol("water-cloud"), "lacks the effective radius of its droplets");
   has(aerosol(3), "sky.aerosol = 3");
   has(aerosol({{"n", 1.4}}), "is missing");
-  has(aerosol({{"n", 1.4}, {"radius_um", 0.1}, {"effective_radius_um", 0.2}}), "stands beside");
+  has(aerosol({{"n", 1.4}, {"radius_um", 0.1}, {"effective_radius_um", 0.2}}),
+      "conflicts "
+      "with");
   has(aerosol({{"n", 1.4}, {"radius_um", 1e7}}), "must be 1e-06 to 1e+06");
   has(aerosol({{"n", 1.4}, {"radiuss_um", 1}}), "did you mean radius_um?");
   has(complaint(rayleigh({{"aerosol", "maritime"}, {"aerosol_tau", 0.1}, {"tau", 0.1}}),
@@ -256,24 +259,26 @@ TEST(AerosolSkyIdentity, WhatIsWrongWithAnAirIsSaidAtItsPlace) {
       "is not covered");
   has(complaint(
           rayleigh({{"aerosol", "maritime"}, {"aerosol_tau", 0.1}, {"aerosol_radius_um", 2}})),
-      "has a law of sizes of its own");
+      "has its own size law");
   has(layer({{"tau", nullptr}}), "lacks \"tau\"");
   has(layer({{"tau", -1}}), "sky.layers[0].tau = -1");
-  has(layer({{"from_m", 100}}), "does not say in one way where the layer is");
+  has(layer({{"from_m", 100}}), "does not specify its height exactly once");
   has(layer({{"from_m", 100}, {"to_m", 50}}), "must be above from_m");
-  has(layer({{"scale_height_m", 100}, {"from_m", 0}, {"to_m", 50}}), "in one way");
-  has(layer({{"particles", "molecules"}, {"albedo", 0.5}}), "belongs to no particles");
+  has(layer({{"scale_height_m", 100}, {"from_m", 0}, {"to_m", 50}}),
+      "does not specify its "
+      "height exactly once");
+  has(layer({{"particles", "molecules"}, {"albedo", 0.5}}), "needs particles");
   has(layer({{"taus", 1}}), "is not a known key here; did you mean tau?");
   has(complaint(rayleigh({{"layers", json::array()}})), "sky.layers");
   has(complaint(rayleigh({{"atmosphere", "tropicl"}})), "did you mean tropical?");
   has(complaint(rayleigh({{"atmosphere", "tropical"}, {"pressure_hPa", 900}})),
-      "stands beside the pressure of an atmosphere");
+      "conflicts with the pressure of an atmosphere");
   has(complaint(rayleigh({{"ozone_DU", 1001}})), "must be 0 to 1000");
   has(complaint(rayleigh({{"ozone_DU", 300}}), {900}), "900");
   has(complaint(rayleigh({{"aerosol", "maritime"},
                           {"aerosol_tau", 0.1},
                           {"aerosol_place", "below"},
                           {"ozone_DU", 300}})),
-      "says no height, which ozone_DU needs");
-  has(complaint(rayleigh({{"aerosol_at_nm", 550}})), "belongs to no aerosol");
+      "gives no height, but ozone_DU needs one");
+  has(complaint(rayleigh({{"aerosol_at_nm", 550}})), "needs an aerosol");
 }

@@ -36,8 +36,9 @@ double apart(const CDStokesVector& a, const CDStokesVector& b) {
 }
 }  // namespace
 
-// At the nodes the light is that of the solver itself, to the rounding of angles; half-way between them linear interpolation errs by an
-// eighth of the step squared times the curvature. The spheroids have 11 orders: (pi/180)^2 / 8 * 11^2 = 5e-3.
+// At the nodes the light is that of the solver itself, to the rounding of angles; half-way
+// between them linear interpolation has an error of an eighth of the step squared times the
+// curvature. The spheroids have 11 orders: (pi/180)^2 / 8 * 11^2 = 5e-3.
 TEST(AerosolSkyInvariant, TheSkyOfASceneIsTheLightOfTheAir) {
   const SpectralGridPtr grid = SpectralGrid::make({450, 650});
   const SkyEntry& entry = skyEntry("rayleigh", {});
@@ -171,7 +172,8 @@ TEST(AerosolSkyIdentity, ParticlesMayAbsorbAnyShare) {
   EXPECT_THROW(with("1.01"), InputError);
 }
 
-// The air before a camera is made of the sky's own light, if it is wanted, and if the aerosol has a height.
+// The air before a camera is made of the sky's light, if it is requested, and if the aerosol
+// has a height.
 TEST(AerosolSkyInvariant, TheCameraLooksThroughTheSameAir) {
   const SpectralGridPtr grid = SpectralGrid::make({450, 650});
   const SkyEntry& entry = skyEntry("rayleigh", {});
@@ -187,7 +189,7 @@ TEST(AerosolSkyInvariant, TheCameraLooksThroughTheSameAir) {
   ASSERT_TRUE(haze.path_radiance);
   EXPECT_TRUE(haze.path_radiance->polarizes());
   EXPECT_FALSE(made({}, false).path_radiance);
-  // a look up through all of the air brings the sky of the scene, here between the nodes of both tables
+  // a view up through all of the air is the sky of the scene, here between the nodes of both tables
   const CDVector up = compassDirection(33.3 * degree, 77 * degree);
   CDSpectralVector<CDStokesVector> sky(grid), air(grid);
   haze.sky->radiance(up, sky);
@@ -204,7 +206,7 @@ TEST(AerosolSkyInvariant, TheCameraLooksThroughTheSameAir) {
       (void)made({{"aerosol_place", place}}, true);
       FAIL() << place;
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("give aerosol_scale_height_m in its place"),
+      EXPECT_NE(std::string(error.what()).find("give aerosol_scale_height_m instead"),
                 std::string::npos)
           << error.what();
     }

@@ -52,7 +52,7 @@ std::vector<Case> cases() {
        0.8}};
 }
 
-// The light at some heights along some cosines, from a solution of its own, finer in all.
+// The light at some heights along some cosines, from a separate solution, finer in everything.
 struct Exact {
   Exact(const Case& c, const std::vector<double>& heights, const std::vector<double>& cosines)
       : heights_(heights), cosines_(cosines), air_(c.parts, 60) {
@@ -108,7 +108,8 @@ CDVector towards(double elevation_deg, double azimuth_deg) {
 }
 }  // namespace
 
-// What arrives is the light of the solver at the camera, if what leaves is the light of the solver there. The table's error is told as 1 %.
+// What arrives is the light of the solver at the camera, if what leaves is the light of the
+// solver there. The stated error of the table is 1 %.
 TEST(AirBetweenInvariant, WhatArrivesIsTheLightAtTheCamera) {
   double worst = 0;
   for (const Case& c : cases()) {
@@ -153,7 +154,8 @@ TEST(AirBetweenInvariant, WhatArrivesIsTheLightAtTheCamera) {
   RecordProperty("worst", fmt::format("{}", worst));
 }
 
-// Beer's law by hand, in haze and molecules of their own heights: the difference between what arrives of light and of none.
+// Beer's law by hand, in haze and molecules with different heights: the difference between what
+// arrives of light and of none.
 TEST(AirBetweenIdentity, TransmissionIsBeersLaw) {
   const Case c = cases()[1];
   const LayeredAir air = airOf(c, towards(20, 0));
@@ -203,7 +205,7 @@ TEST(AirBetweenInvariant, WaysCanBeCut) {
   }
 }
 
-// Level ways are the limit of those that are not, for short ways and long ones, upwards and downwards.
+// Level paths are the limit of the others, for short ways and long ones, upwards and downwards.
 TEST(AirBetweenIdentity, LevelWaysAreALimit) {
   for (const Case& c : cases()) {
     const LayeredAir air = airOf(c, compassDirection(std::acos(c.sun_cosine), 200 * degree));

@@ -90,9 +90,9 @@ TEST(AirOfOtherSkiesIdentity, WhatDoesNotFitIsSaidAtItsPlace) {
   EXPECT_EQ(complaint(sceneWith(grey, fog, 1)), "accepted");  // control
   json sky = haze;
   has(complaint(sceneWith(sky, haze, 1)), "atmosphere = {");
-  has(complaint(sceneWith(sky, haze, 1)), "stands beside a sky that has air");
+  has(complaint(sceneWith(sky, haze, 1)), "conflicts with a sky that has air");
   sky["path_radiance"] = true;
-  has(complaint(sceneWith(sky, haze, 1)), "stands beside the sky's own air");
+  has(complaint(sceneWith(sky, haze, 1)), "conflicts with the air of the sky");
   json wrong = fog;
   wrong["aerosol_tau"] = 0.1;
   has(complaint(sceneWith(grey, wrong, 1)), "atmosphere.aerosol_tau");
@@ -107,11 +107,11 @@ TEST(AirOfOtherSkiesIdentity, WhatDoesNotFitIsSaidAtItsPlace) {
       "atmosphere.tau = -1");
   json dark = sceneWith(grey, haze, 1);
   dark.erase("sun");
-  has(complaint(dark), "has no sun that makes it");
+  has(complaint(dark), "needs a sun");
   json table = grey;
   table["path_radiance"] = true;
   has(complaint(sceneWith(table, nullptr, 1)),
-      "is not known of such a sky; leave it out, or give the scene an \"atmosphere\"");
+      "is not available for this sky; leave it out, or give the scene an \"atmosphere\"");
 }
 
 // The lake of the README, small. Its far ridge is paler than the near one, by the air alone: seen without air both are leaves.

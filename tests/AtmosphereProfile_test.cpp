@@ -20,7 +20,7 @@ AtmosphereProfile standard(const std::string& name) {
   return AtmosphereProfile::named(name, {"test", 0, ""});
 }
 
-// What reading this text answers.
+// The result of reading this text.
 std::string complaint(const std::string& text) {
   const Scratch scratch;
   put(scratch / "air.dat", text);
@@ -168,17 +168,17 @@ TEST(AtmosphereProfileRefusals, BrokenFilesNameTheLine) {
   EXPECT_EQ(complaint("10 265 223 1e18 1e12\n" + ends + "-0.2 10l3 288 2e19 6e11\n"),
             "air.dat:3: 10l3: is not a number; write a number such as 0.2 or 1.5e-3");
   EXPECT_EQ(complaint("10 265 -50 1e18 1e12\n" + ends),
-            "air.dat:1: temperature = -50 K: must be 50 to 3000; mend the level");
+            "air.dat:1: temperature = -50 K: must be 50 to 3000; fix the level");
   EXPECT_EQ(complaint("10000 265 223 1e18 1e12\n" + ends),
-            "air.dat:1: height = 10000 km: must be -0.5 to 1000; mend the level");
+            "air.dat:1: height = 10000 km: must be -0.5 to 1000; fix the level");
   EXPECT_EQ(complaint("10 1265 223 1e18 1e12\n" + ends),
-            "air.dat:1: pressure = 1265 hPa: must be above 0, up to 1100; mend the level");
+            "air.dat:1: pressure = 1265 hPa: must be above 0, up to 1100; fix the level");
   EXPECT_EQ(complaint("20 55 217 1 1\n10 26.5 223 1 1\n" + ends).substr(0, 60),
             "air.dat:1: 20 km, 55 hPa: is not above its neighbour with le");
   EXPECT_EQ(complaint("0 1013\n1 900\n").substr(0, 45),
             "air.dat:1: 0 1013: holds fewer than 3 numbers");
   EXPECT_EQ(complaint(ends),
-            "air.dat: has fewer than two levels; give the air at two heights at least");
+            "air.dat: has fewer than two levels; give the air at two or more heights");
   EXPECT_EQ(complaint("").substr(0, 17), "air.dat: is empty");
   EXPECT_EQ(complaint("height_km,pressure_hPa\n0,1013\n").substr(0, 24),
             "air.dat:1: temperature_K");
@@ -187,7 +187,7 @@ TEST(AtmosphereProfileRefusals, BrokenFilesNameTheLine) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(
-        std::string(error.what()).find("is not there; give the file of a profile, or one of"),
+        std::string(error.what()).find("does not exist; give the file of a profile, or one of"),
         std::string::npos)
         << error.what();
   }

@@ -240,7 +240,8 @@ TEST(BRDFBasisIdentity, ImpossibleSumsAreRefused) {
   EXPECT_THROW(fitBasis(copper(), 13), MathError);
 }
 
-// The name of a part says where it stands in the matrix: "02-" in the elements 02 and 20, and nowhere else. A number along a diagonal
+// The name of a part gives its elements of the matrix: "02-" the elements 02 and 20, and no
+// others. A number along a diagonal
 // is alone there. (A sine is nothing in the plane of incidence, so the geometries lie outside of it.)
 TEST(BRDFBasisIdentity, APartIsWhereItsNameSays) {
   const auto grid = SpectralGrid::make({500.0});

@@ -44,7 +44,7 @@ double f00(const CDBRDFModel& model, const BRDFGeometry& g, std::size_t band = 0
 }
 }  // namespace
 
-// The zero bistatic scan comes back, for every tilt: what decides the slip of eq 5.8.
+// The zero bistatic scan is recovered for every tilt, which decides the misprint of eq 5.8.
 TEST(BRDFBeardMaxwellIdentity, TheScanComesBack) {
   auto p = aluminium(1, 0, 0);
   const BRDFBeardMaxwell model(p);

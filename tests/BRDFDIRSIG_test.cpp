@@ -146,7 +146,8 @@ TEST(BRDFDIRSIGIdentity, ImpossibleSurfacesAreRefused) {
   EXPECT_THROW(surface(0.1, 0.1, 20, cone).sample({0, 0, -1}, 0.5, 0.5, 0.5), MathError);
 }
 
-// A height in 1/sr of up to a thousand million is taken: a lobe of a few seconds of arc. More is no surface.
+// A height in 1/sr of up to a thousand million is taken: a lobe of a few seconds of arc. More
+// is not a surface.
 TEST(BRDFDIRSIGIdentity, TheHeightOfTheLobeHasALimit) {
   const ModelEntry& entry = modelEntry("dirsig", {});
   const auto grid = SpectralGrid::make({550.0});

@@ -1,5 +1,5 @@
 // A layered paint (nw/surface/BRDFLayeredPaint.nw) against the glossy coating, Torrance-Sparrow facets, and what all
-// models must pass. Its bodies are solved by nw/air/PaintScattering.nw, which has a test of its own.
+// models must pass. Its bodies are solved by nw/air/PaintScattering.nw, which has its own test.
 #include "malus/surface/BRDFLayeredPaint.hpp"
 
 #include <gtest/gtest.h>
@@ -100,7 +100,7 @@ TEST(BRDFLayeredPaintInvariant, ReciprocalRealizableAndFast) {
 }
 
 TEST(BRDFLayeredPaintIdentity, DHRIsTheIntegral) {
-  // the plain rule does not know the bends of the tables and the grooves
+  // the plain rule ignores the bends of the tables and the grooves
   expectDHRIsTheIntegral(white(0, false), 1e-3);
   expectDHRIsTheIntegral(white(0.2, true), 1e-3);
 }

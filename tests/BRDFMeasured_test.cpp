@@ -497,9 +497,9 @@ TEST(BRDFMeasuredIdentity, BrokenTextIsRefused) {
   const std::string head = "theta_h_deg,theta_d_deg,phi_d_deg,wavelength_nm,f00\n";
   for (const auto& [rows, problem] :
        {std::pair{"", "holds no matrix"},
-        {"0,0,0,550,1\n0,0,0,550,1\n", ":3: theta_h_deg: is a node that was there before"},
+        {"0,0,0,550,1\n0,0,0,550,1\n", ":3: theta_h_deg: repeats a node"},
         {"-5,0,0,550,1\n", "theta_h: is negative"},
-        {"95,0,0,550,1\n", "theta_h_deg = 95 deg: is beyond any angle of its kind"},
+        {"95,0,0,550,1\n", "theta_h_deg = 95 deg: exceeds the range of this angle"},
         {"0,0,0,0,1\n", "wavelength_nm = 0 nm: must be above zero"},
         {"0,0,0,550,x\n", "f00 = x: is not a number"},
         {"0,0,0,550,1\n0,0,90,550,1\n", "phi_d: leaves out more than 120 deg of the circle"},

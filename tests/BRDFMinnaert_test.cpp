@@ -16,7 +16,7 @@ using namespace malus;
 const SpectralGridPtr grid = SpectralGrid::make({450, 550, 650});
 const CDSpectralVector<double> reflectance(grid, {0.1, 0.3, 0.7});
 
-/// The base class's own quadrature, which knows nothing of the closed form.
+/// The base class's quadrature, which does not use the closed form.
 double quadrature(const CDBRDFModel& model, double zenith_rad, std::size_t band) {
   return model.CDBRDFModel::getDHR(zenith_rad)[band];
 }

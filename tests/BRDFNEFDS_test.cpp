@@ -81,7 +81,7 @@ TEST(BRDFNEFDSIdentity, AtALaserItIsBeardAndMaxwell) {
                 1e-13);
   }
   EXPECT_GT(std::abs(f.at(4).getScalar() - scale * r.at(1).getScalar()),
-            1e-3);  // 900 nm is no laser
+            1e-3);  // 900 nm is not a laser's wavelength
 }
 
 TEST(BRDFNEFDSIdentity, LambertsShapeIsTheSameAtAllLasers) {

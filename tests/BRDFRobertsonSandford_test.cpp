@@ -1,4 +1,5 @@
-// Robertson and Sandford's paint (nw/surface/BRDFRobertsonSandford.nw) against the integrals its norms stand for.
+// Robertson and Sandford's paint (nw/surface/BRDFRobertsonSandford.nw) against the integrals of
+// its norms.
 #include "malus/surface/BRDFRobertsonSandford.hpp"
 
 #include <gtest/gtest.h>

@@ -537,7 +537,8 @@ TEST(BRDFTorranceSparrowIdentity, DHROfAMirrorAgreesWithTheDHRChapter) {
     }
 }
 
-// Total reflection begins like a root, on a curve of its own: against midpoints on a fine grid of slopes.
+// Total reflection begins like a square root, on a separate curve: against midpoints on a fine
+// grid of slopes.
 TEST(BRDFTorranceSparrowIdentity, DHRKnowsWhereTotalReflectionBegins) {
   const double sigma = 0.3, theta = 70 * degree, n = 0.9;
   const double ci = std::cos(theta), si = std::sin(theta);

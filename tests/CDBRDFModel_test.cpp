@@ -1,4 +1,4 @@
-// The face of all reflections and its plain answers (nw/surface/CDBRDFModel.nw).
+// The interface of all reflections and its default implementations (nw/surface/CDBRDFModel.nw).
 #include "malus/surface/CDBRDFModel.hpp"
 
 #include <gtest/gtest.h>
@@ -82,8 +82,8 @@ TEST(CDBRDFModelIdentity, ScatterIsTheMatrixTimesTheVectorAdded) {
   }
 }
 
-// What the class gathers for models that have no loop of their own is the sum of scatter; nothing comes from below, and light
-// without polarisation stays so where the matrix lets it.
+// Where a model does not override gather(), it is the sum of scatter(); nothing comes from
+// below, and unpolarised light stays unpolarised where the matrix allows it.
 TEST(CDBRDFModelIdentity, GatheringIsTheSumOfScatter) {
   const Polynomial model(grid());
   const CDVector viewer = CDVector::fromAngles(0.6, 0);

@@ -187,7 +187,7 @@ TEST(CDSpectralLocationInvariant, AStraightLineIsSeenAtTheCentroid) {
               tolerance);
   EXPECT_NEAR(read(CDSpectralLocation(557.3, BandResponse::gaussian(44))), 3 - 5.573,
               tolerance);
-  // a triangle that rises from 400 to 550 and falls at once: its centroid stands at 500
+  // a triangle that rises from 400 to 550 and falls at once: its centroid is at 500
   EXPECT_NEAR(read(CDSpectralLocation(
                   520, BandResponse::tabulated({400, 550, 550.0000000001}, {0, 1, 0}))),
               3 - 5, 1e-11);  // the fall is 1e-10 nm wide
@@ -257,7 +257,7 @@ TEST(CDSpectralLocationIdentity, BandsComeInAnyOrderAndWithEqualCentres) {
   EXPECT_THROW(bands->weights(green), GridError);
   EXPECT_THROW(SpectralGrid::bands({}), GridError);
   EXPECT_TRUE(SpectralGrid::bands({blue, pan})->isOrdered());
-  // the name is no property of the light
+  // the name is not a property of the light
   EXPECT_TRUE(*SpectralGrid::bands({blue}, {"blue"}) == *SpectralGrid::make({450}));
   EXPECT_EQ(SpectralGrid::make({450})->name(0), "");
   EXPECT_THROW(SpectralGrid::bands({blue}, {"blue", "red"}), GridError);
@@ -344,14 +344,14 @@ TEST(CDSpectralLocationIdentity, DifferentGridsAreNamed) {
   const auto said = [&](const SpectralGridPtr& b) {
     return message([&] { demandSameGrid(*a, *b); });
   };
-  const std::string remedy = "; bring one of them over explicitly with resampled(grid)";
+  const std::string remedy = "; resample one of them with resampled(grid)";
   EXPECT_EQ(said(SpectralGrid::make({450, 551, 650})),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 "
+            "the spectra have different grids (3 entries from 450 to 650 nm against 3 "
             "entries from "
             "450 to 650 nm, differing first at entry 1, 550 against 551 nm)" +
                 remedy);
   EXPECT_EQ(said(SpectralGrid::make({450})),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 1 "
+            "the spectra have different grids (3 entries from 450 to 650 nm against 1 "
             "entry at 450 "
             "nm)" +
                 remedy);
@@ -359,7 +359,7 @@ TEST(CDSpectralLocationIdentity, DifferentGridsAreNamed) {
       CDSpectralLocation(450), CDSpectralLocation(550, BandResponse::gaussian(10)),
       CDSpectralLocation(650)});
   EXPECT_EQ(said(filtered),
-            "the spectra stand on different grids (3 entries from 450 to 650 nm against 3 "
+            "the spectra have different grids (3 entries from 450 to 650 nm against 3 "
             "entries from "
             "450 to 650 nm, with different band responses at 550 nm)" +
                 remedy);

@@ -134,7 +134,7 @@ TEST(CDSpectralUnitsIdentity, AWrongNameIsToldWithItsPlace) {
   } catch (const InputError& error) {
     EXPECT_EQ(
         std::string(error.what()),
-        "copper.csv:3: units = NM: is not a unit of the spectral axis; known are: nm, um, "
+        "copper.csv:3: units = NM: is not a unit of the spectral axis; choose from: nm, um, "
         "cm^-1, eV, Hz");
   }
   for (const char* bad : {"", "m", "EV", "hz", " nm", "nm "})

@@ -257,7 +257,7 @@ RC_GTEST_PROP(CDSpectralVectorIdentity, ProductsOfMixtures, (unsigned seed)) {
          each<4>(n, [&](auto i) { return plus(t[i], as[i], w); }));
   demand(Mueller(vb).multiplyAdd(va, vb, w),
          each<16>(n, [&](auto i) { return plus(b[i], ab[i], w); }));
-  // the sum may stand among the operands
+  // the sum may be one of the operands
   Stokes sum = vs;
   demand(sum.multiplyAdd(va, sum, w), each<4>(n, [&](auto i) { return plus(s[i], as[i], w); }));
   Mueller left = va, right = vb;
@@ -614,7 +614,7 @@ TEST(CDSpectralVectorInvariant, DensityConversionConservesTheIntegral) {
   };
   for (const auto units : {CDSpectralUnits::micrometre, CDSpectralUnits::perCentimetre,
                            CDSpectralUnits::electronVolt, CDSpectralUnits::hertz}) {
-    // the centres are given in nanometres; grid().in() asks each for its other coordinate
+    // the centres are given in nanometres; grid().in() converts each
     const Stokes converted = convertDensity(v, CDSpectralUnits::nanometre, units);
     for (int k : {0, 1}) {
       const double exact = k == 0 ? 600 : 300 * (1 - 0.75);  // in closed form
@@ -652,7 +652,7 @@ static_assert(!SpectralValue<int> && !SpectralValue<bool> && !SpectralValue<std:
 static_assert(Multiplies<CDMuellerMatrix, CDStokesVector> &&
               Multiplies<CDMuellerMatrix, CDMuellerMatrix>);
 static_assert(Multiplies<double, CDStokesVector> && Multiplies<Colour, double>);
-// what Mueller calculus does not know does not compile
+// operations that Mueller calculus does not have do not compile
 static_assert(!Multiplies<CDStokesVector, CDStokesVector> &&
               !Multiplies<Colour, CDStokesVector>);
 
@@ -664,7 +664,7 @@ TEST(CDSpectralVectorIdentity, AnyTypeWithTheArithmetic) {
   EXPECT_EQ((v + v)[0], (Colour{2, 4}));
   EXPECT_EQ((v - v)[1], Colour{});
   EXPECT_EQ((v * 0.5)[1], (Colour{0, 2}));
-  EXPECT_EQ((v / 2.0)[1], (Colour{0, 2}));  // has no quotient of its own
+  EXPECT_EQ((v / 2.0)[1], (Colour{0, 2}));  // has no separate quotient
   EXPECT_EQ((v * Scalars(grid, {2, 3}))[1], (Colour{0, 12}));
   EXPECT_EQ(v.interpolate(500), (Colour{0.5, 3}));
 

@@ -1,4 +1,4 @@
-// In a file of its own, because the header of the distribution takes three seconds to compile.
+// In a separate file, because the header of the distribution takes three seconds to compile.
 #include "ChiSquared.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>

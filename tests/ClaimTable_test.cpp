@@ -43,14 +43,16 @@ TEST(ClaimTableIdentity, NegativeControlFaultyRowsAreRefused) {
   EXPECT_TRUE(refuses("T1,a,thesis,sentence,reproduced,,,,it falls,error,\n", "is empty"));
   EXPECT_TRUE(refuses("T1,a,thesis,sentence,reproduced,,,,,error,falls\n", "is empty"));
   EXPECT_TRUE(refuses(first + first, "T1/a: stands twice"));
-  EXPECT_TRUE(refuses("T1,a,theses,sentence,,,,,it falls,,falls\n", "none of the words"));
-  EXPECT_TRUE(refuses("T1,a,thesis,hunch,,,,,it falls,,falls\n", "none of the words"));
+  EXPECT_TRUE(refuses("T1,a,theses,sentence,,,,,it falls,,falls\n", "not one of the words"));
+  EXPECT_TRUE(refuses("T1,a,thesis,hunch,,,,,it falls,,falls\n", "not one of the words"));
   EXPECT_TRUE(
-      refuses("T1,a,thesis,choice,,,,,it falls,,below 1\n", "gives a bound and no reason"));
+      refuses("T1,a,thesis,choice,,,,,it falls,,below 1\n", "gives a bound without a reason"));
   EXPECT_EQ(complaint("T1,a,thesis,choice,,,,,it falls,,below 1: it was above\n"), "");
-  EXPECT_TRUE(refuses("T1,a,input,digits,reproduced,,,,sigma .2,,same\n", "none of the words"));
-  EXPECT_TRUE(refuses("T1,a,fitted,sentence,,,,,it falls,,falls\n", "does not go with"));
-  EXPECT_TRUE(refuses("T1,a,thesis,sentence,,,sun:2,,it falls,,falls\n", "does not go with"));
+  EXPECT_TRUE(refuses("T1,a,input,digits,reproduced,,,,sigma .2,,same\n",
+                      "not one of the "
+                      "words"));
+  EXPECT_TRUE(refuses("T1,a,fitted,sentence,,,,,it falls,,falls\n", "does not fit"));
+  EXPECT_TRUE(refuses("T1,a,thesis,sentence,,,sun:2,,it falls,,falls\n", "does not fit"));
 }
 
 TEST(ClaimTableIdentity, NegativeControlOneSentenceHasOneVerdict) {
@@ -61,8 +63,8 @@ TEST(ClaimTableIdentity, NegativeControlOneSentenceHasOneVerdict) {
   };
   EXPECT_TRUE(
       refuses(second("differs", "T1/a", "it falls (page 9)"), "one sentence one verdict"));
-  EXPECT_TRUE(refuses(second("reproduced", "", "it falls (page 9)"), "stands in T1/a already"));
-  EXPECT_TRUE(refuses(second("reproduced", "T1/x", "it rises"), "is no row"));
+  EXPECT_TRUE(refuses(second("reproduced", "", "it falls (page 9)"), "is already in T1/a"));
+  EXPECT_TRUE(refuses(second("reproduced", "T1/x", "it rises"), "is not a row"));
   EXPECT_TRUE(refuses(second("reproduced", "T2/b", "it rises"), "repeats a row itself"));
 }
 

@@ -102,8 +102,9 @@ void expectNear(const Estimate& got, const std::array<double, 4>& expected, cons
 }
 }  // namespace
 
-// A matt floor in the sun, seen through m upright panes at Brewster's angle: Stokes's formula. The panes stand close, so
-// that light that goes to and fro between them still sees the floor; in front of the camera nothing is lit.
+// A matt floor in the sun, seen through m upright panes at Brewster's angle: Stokes's formula.
+// The panes are close together, so that light between them still reaches the floor; in front of
+// the camera nothing is lit.
 TEST(ClearPathsPublished, APileOfPlatesPolarises) {
   const double theta = brewsterAngle(1.5);
   const Reflectances face = fresnelReflectances(theta, 1.5);
@@ -344,7 +345,7 @@ TEST(ClearPathsRefusal, SaysWhatIsWrongWithABody) {
       "bounds no closed body: 4 of its edges do not belong to two facets with fronts on one "
       "side, one of them at (-1, -1, -1) m");
   for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
-  EXPECT_EQ(faultOf(mesh), "bounds a body whose fronts look inwards");
+  EXPECT_EQ(faultOf(mesh), "bounds a body whose fronts face inwards");
   GeometryBuilder builder;
   builder.addGround(0, "water", "ground");
   EXPECT_NE(bodyFault(std::move(builder).build(), 0).what.find("has no end"),

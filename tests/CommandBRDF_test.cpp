@@ -213,7 +213,7 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
                 .out.find("sigma        roughness, standard deviation of the facet slopes "
                           "[rad]: 1e-06 to 10"),
             std::string::npos);
-  // what holds with some settings is promised with these, and with a small letter
+  // a property that holds with some settings is listed with these settings and a small letter
   EXPECT_NE(list.find("torrance-sparrow   P-re"), std::string::npos) << list;
   EXPECT_NE(list.find("lambertian         --RE"), std::string::npos) << list;
   const std::string described = malusIn(scratch.path, "brdf --describe torrance-sparrow").out;
@@ -223,7 +223,8 @@ TEST(CommandBRDFIdentity, ModelsCanBeListedAndDescribed) {
       << described;
 }
 
-// At the horizon the answer is the limit: the neighbours' shadow shrinks as the projected area does.
+// At the horizon the result is the limit: the neighbours' shadow shrinks as the projected area
+// does.
 // Tolerance: at 1e-7 degrees from the limit the BRDF differs by its slope (some units per radian) times 1.7e-9.
 TEST(CommandBRDFIdentity, TheHorizonIsTheLimit) {
   const Scratch scratch;
@@ -302,10 +303,10 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
     return outcome.err;
   };
   const std::string remedy =
-      "give a CSV table of wavelength_nm, n, k, bias, sigma and, if wanted, rho_d, rho_v (the "
+      "give a CSV table of wavelength_nm, n, k, bias, sigma and, optionally, rho_d, rho_v (the "
       "name of a file)\n";
   EXPECT_EQ(error(nefds + "--param file=nf.csv "),
-            "command line: --param file = nf.csv: is not there; " + remedy);
+            "command line: --param file = nf.csv: does not exist; " + remedy);
   EXPECT_EQ(error(nefds + "--param file=. "),
             "command line: --param file = .: is a directory; " + remedy);
   EXPECT_EQ(error(nefds), "command line: --param file: is missing for nefds; " + remedy);
@@ -315,7 +316,8 @@ TEST(CommandBRDFIdentity, AMaterialOfTheNEFComesFromItsTable) {
       "is extrapolated; give a wider spectrum or leave out the band\n");
   put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma,rhod\n500,1.5,0,1,1,1\n");
   EXPECT_EQ(error(nefds + file),
-            "nef.csv: rhod: is no column of this kind of table; did you mean rho_d? known are: "
+            "nef.csv: rhod: is not a column of this kind of table; did you mean rho_d? choose "
+            "from: "
             "wavelength_nm, n, k, bias, sigma, rho_d, rho_v\n");
   put(scratch / "nef.csv", "wavelength_nm,n,k,bias,sigma\n500,1.5,0,1,1\n600,1.5,-1,1,1\n");
   EXPECT_EQ(
@@ -361,16 +363,15 @@ TEST(CommandBRDFInvariant, AModelThroughATable) {
   EXPECT_EQ(error("brdf --model measured --param file=t.csv --wavelength-nm 551 " + geometry),
             "t.csv: the table: does not cover the band at 551 nm; it covers 550 to 550 nm, and "
             "nothing is extrapolated; give a wider spectrum or leave out the band\n");
-  EXPECT_EQ(
-      error(glass + "--table t.dat"),
-      "command line: --table = t.dat: has an ending that names no layout; let it end with "
-      ".csv, .pbsdf (KAIST) or .binary (MERL)\n");
+  EXPECT_EQ(error(glass + "--table t.dat"),
+            "command line: --table = t.dat: has an unknown ending; choose "
+            ".csv, .pbsdf (KAIST) or .binary (MERL)\n");
   EXPECT_EQ(
       error(glass + "--table t.csv --steps 181"),
       "command line: --steps = 181: is not a whole number from 1 to 180; give e.g. 180\n");
   EXPECT_EQ(error(glass + "--table t.csv --dhr"),
             "command line: --table: excludes angles, --input, --dhr, --emissivity, --sample, "
-            "--format and --out; ask for one thing at a time\n");
+            "--format and --out; choose one of them\n");
   for (const std::string other :
        {"--emissivity", "--format csv", "--theta-i-deg 30", "--out a.csv"})
     EXPECT_EQ(malusIn(scratch.path, glass + "--table u.csv " + other).code, 2) << other;
@@ -396,21 +397,21 @@ TEST(CommandBRDFIdentity, WithoutShadowingTheHorizonIsRefused) {
   EXPECT_EQ(filesBelow(scratch.path), 0u);
 }
 
-// A name below something that is no directory can be written by nobody, not even by root.
+// A name below something that is not a directory cannot be written, not even by root.
 TEST(CommandBRDFIdentity, WhatCannotBeWrittenIsSaidSo) {
   const Scratch scratch;
   put(scratch / "file", "precious\n");
   const Outcome below = malusIn(scratch.path, plate + "--out file/a.csv");
   EXPECT_EQ(below.code, 2);
   EXPECT_EQ(below.err,
-            "file/a.csv: cannot be written; name a file in a directory with room that you may "
-            "write to\n");
+            "file/a.csv: cannot be written; choose a file in a writable directory with free "
+            "space\n");
   std::filesystem::create_directory(scratch / "directory");
   const Outcome directory = malusIn(scratch.path, plate + "--out directory");
   EXPECT_EQ(directory.code, 2);
   EXPECT_EQ(directory.err,
-            "directory: cannot be written; name a file in a directory with room that you may "
-            "write to\n");
+            "directory: cannot be written; choose a file in a writable directory with free "
+            "space\n");
   EXPECT_EQ(contents(scratch / "file"), "precious\n");
   EXPECT_EQ(filesBelow(scratch.path), 1u);
 }
@@ -442,15 +443,16 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {copper + "--theta-i-deg 30 --sample 5 --seed x",
        "command line: --seed = x: is not a whole number from 0 to 4294967295; give e.g. 1000"},
       {plate + "--out ''",
-       "command line: --out: must name a file; malus brdf --help shows what is understood"},
+       "command line: --out: must name a file; malus brdf --help shows the options"},
       {flags + "--param sigma=nan" + angles,
        "command line: --param sigma = nan: is not a finite number; write a number such as 0.2"},
       {flags + "--param sigma=0,2" + angles,
        "command line: --param sigma = 0,2: is not a number; write a number such as 0.2 or "
        "1.5e-3"},
       {flags + "--param sgima=0.2" + angles,
-       "command line: --param sgima = 0.2: is no parameter of torrance-sparrow; did you mean "
-       "sigma? known are: n, k, sigma, "
+       "command line: --param sgima = 0.2: is not a parameter of torrance-sparrow; did you "
+       "mean "
+       "sigma? choose from: n, k, sigma, "
        "shadowing, diffuse"},
       {flags + angles,
        "command line: --param sigma: is missing for torrance-sparrow; give roughness, standard "
@@ -461,14 +463,15 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {flags + "--param n=1 --param sigma=0.2" + angles,
        "command line: --param n = 1: is given twice; give it once"},
       {flags + "--param sigma=0.2 --param shadowing=vgroove" + angles,
-       "command line: --param shadowing = vgroove: is none of the words allowed here; did you "
-       "mean v-groove? known are: none, "
+       "command line: --param shadowing = vgroove: is not one of the words allowed here; did "
+       "you "
+       "mean v-groove? choose from: none, "
        "v-groove, smith, smith-correlated"},
       {flags + "--param sigma=0.2 --wavelength-nm -5" + angles,
        "command line: --wavelength-nm = -5 nm: must be above 0; give e.g. 550"},
       {"brdf --model torence-sparrow" + angles,
        "command line: --model = torence-sparrow: is not a model of malus; did you mean "
-       "torrance-sparrow? known are: " +
+       "torrance-sparrow? choose from: " +
            knownModels()},
       {"brdf" + angles,
        "command line: --model: is missing; malus brdf --list shows the models"},
@@ -497,14 +500,14 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
       {plate + "--steps 2 --out a.csv",
        "command line: --steps: belongs to --table; leave it out"},
       {copper + "--input none.csv --out a.csv",
-       "none.csv: is not there; give the name of a readable CSV file"},
+       "none.csv: does not exist; give the name of a readable CSV file"},
       {copper + "--input q.csv --theta-i-deg 30 --out a.csv",
        "command line: --input: excludes --theta-i-deg, --theta-r-deg and --phi-deg; give a "
        "file or "
        "angles"},
       {plate + "--format xml",
-       "command line: --format: xml not in {text,csv,json}; malus brdf --help shows what is "
-       "understood"},
+       "command line: --format: xml not in {text,csv,json}; malus brdf --help shows the "
+       "options"},
   };
   const Scratch scratch;
   for (const auto& [arguments, line] : cases) {
@@ -519,7 +522,7 @@ TEST(CommandBRDFIdentity, BadInputIsOneLineAndLeavesNothing) {
 TEST(CommandBRDFIdentity, ABadFileIsOneLineAndLeavesNothing) {
   const std::pair<std::string, std::string> cases[] = {
       {"theta_i_deg,phi_deg\n30,180\n",
-       "q.csv:1: theta_r_deg: is not among the columns; did you mean theta_i_deg? known are: "
+       "q.csv:1: theta_r_deg: is not among the columns; did you mean theta_i_deg? choose from: "
        "theta_i_deg, phi_deg"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,40,180\n30,4o,180\n",
        "q.csv:3: theta_r_deg = 4o: is not a number; write a number such as 0.2 or 1.5e-3"},
@@ -529,19 +532,20 @@ TEST(CommandBRDFIdentity, ABadFileIsOneLineAndLeavesNothing) {
       {"theta_i_deg,theta_r_deg,phi_deg\n30,nan,180\n",
        "q.csv:2: theta_r_deg = nan: is not a finite number; write a number such as 0.2"},
       {"theta_i_deg,theta_r_deg,phi_deg,sigma\n30,40,180,0.2\n",
-       "q.csv:1: sigma: is given by --param as well; give it once, by flag or by column"},
+       "q.csv:1: sigma: is given by --param as well; give it once, as an option or as a "
+       "column"},
       {"theta_i_deg,theta_r_deg,phi_deg,shadwing\n30,40,180,smith\n",
-       "q.csv:1: shadwing: is almost a column that malus knows; did you mean shadowing? known "
-       "are: theta_i_deg, theta_r_deg, "
+       "q.csv:1: shadwing: is similar to a column name of malus; did you mean shadowing? "
+       "choose from: theta_i_deg, theta_r_deg, "
        "phi_deg, n, k, sigma, shadowing, diffuse"},
       {"theta_i_deg,theta_r_deg,phi_deg,f00\n30,40,180,1\n",
-       "q.csv:1: f00: is a column of the answer; leave it out of the question"},
+       "q.csv:1: f00: is a column of the output; leave it out of the input"},
       {"theta_i_deg,theta_r_deg,phi_deg\n30,40\n",
        "q.csv:2: 2 cells: but line 1 names 3 columns; give one cell for each column"},
       {"theta_i_deg,theta_r_deg,phi_deg\n",
-       "q.csv: holds no geometry; write a line of angles below the column names"},
+       "q.csv: has no row of angles; write a line of angles below the column names"},
       {"",
-       "q.csv: holds no line of column names; begin with a line such as "
+       "q.csv: has no line of column names; begin with a line such as "
        "theta_i_deg,theta_r_deg,phi_deg"},
   };
   const Scratch scratch;

@@ -116,14 +116,13 @@ TEST(CommandFitInvariant, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_NE(line("angle.csv").find("angle.csv:3"), std::string::npos);
   EXPECT_EQ(
       line("percent.csv"),
-      "percent.csv:2: Rs = 5: is no reflectance; give a share of the light, 0 to 1, not per "
+      "percent.csv:2: Rs = 5: is not a reflectance; give a share of the light, 0 to 1, not per "
       "cent\n");
-  EXPECT_EQ(line("zero.csv"),
-            "zero.csv:2: holds no value other than zero; leave the row out\n");
+  EXPECT_EQ(line("zero.csv"), "zero.csv:2: has no value other than zero; leave the row out\n");
   EXPECT_EQ(line("normal.csv --fix sigma"),
             "command line: --fix = sigma: has no value; write --fix sigma=0.2\n");
   EXPECT_EQ(line("normal.csv --fix n=1 --fix k=1 --fix sigma=1 --fix diffuse=1"),
-            "command line: --fix: fixes every parameter; leave at least one to be found\n");
+            "command line: --fix: fixes every parameter; leave at least one to be fitted\n");
 }
 
 // A coating as a sum of order five is read back with its reflectance: one fiftieth, as good as the sum is.

@@ -54,34 +54,36 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
   const std::pair<std::string, std::string> cases[] = {
       {"reprodce",
        "command line: command = reprodce: is not a command of malus; did you mean reproduce? "
-       "known are: "
+       "choose from: "
        "reproduce, brdf, fit, sun, sky, mie, render, merge, products, info, schema, table\n"},
       {"reproduce F3.99",
        "command line: ID = F3.99: is not in the inventory; did you mean F3.9? malus reproduce "
        "--list shows all\n"},
       {"reproduce --lst",
-       "command line: --lst: is no flag of malus reproduce; did you mean --list? known are: "
+       "command line: --lst: is not an option of malus reproduce; did you mean --list? choose "
+       "from: "
        "--help, "
        "--list, --out, --json, --update-verdicts\n"},
       {"sun --lat 43 --longitude-deg -77.61",
        "command line: --lat: is now called --latitude-deg; write --latitude-deg\n"},
       {"sun -latitude-deg 43 --longitude-deg -77.61",
-       "command line: -latitude-deg: is no flag of malus sun; did you mean --latitude-deg? "
-       "known are: --help, "
+       "command line: -latitude-deg: is not an option of malus sun; did you mean "
+       "--latitude-deg? "
+       "choose from: --help, "
        "--latitude-deg, "
        "--longitude-deg, --time, --until, --step-min, --input, --out\n"},
       {"--vesion",
-       "command line: --vesion: is no flag of malus; did you mean --version? known are: "
+       "command line: --vesion: is not an option of malus; did you mean --version? choose "
+       "from: "
        "--help, --version, --describe\n"},
       {"schema surplus",
        "command line: The following argument was not expected: surplus; malus schema --help "
-       "shows "
-       "what is understood\n"},
+       "shows the options\n"},
       {"info ''",
-       "command line: FILE: must not be empty; malus info --help shows what is understood\n"},
-      {"table none.csv", "none.csv: is not there; give the name of a readable CSV file\n"},
+       "command line: FILE: must not be empty; malus info --help shows the options\n"},
+      {"table none.csv", "none.csv: does not exist; give the name of a readable CSV file\n"},
       {"table --write-checksum none.csv",
-       "none.csv: is not there; name a readable CSV file\n"}};
+       "none.csv: does not exist; give the name of a readable CSV file\n"}};
   for (const auto& [arguments, line] : cases) {
     const Outcome outcome = malusIn(scratch.path, arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
@@ -91,7 +93,7 @@ TEST(CommandLineIdentity, BadInputIsOneLineAndLeavesNothing) {
   }
 }
 
-// An ID of the inventory that nobody has built yet, now or ever.
+// An ID of the inventory without a function.
 TEST(CommandLineIdentity, WhatIsNotYetBuiltIsSaidSo) {
   const Copy copy;
   const auto inventory = copy / "validation" / "inventory.csv";
@@ -123,9 +125,8 @@ TEST(CommandLineIdentity, TheDataDirectoryMustBeOne) {
       malusIn(scratch.path, "reproduce --list", "MALUS_DATA=/no/such/place");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err,
-            "environment: MALUS_DATA = /no/such/place: is not a directory; name the directory "
-            "validation "
-            "of malus's source\n");
+            "environment: MALUS_DATA = /no/such/place: is not a directory; give the directory "
+            "validation of malus's source\n");
 }
 
 TEST(CommandLineIdentity, ATableIsCheckedAndSealed) {

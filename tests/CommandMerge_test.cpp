@@ -98,25 +98,25 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
     without("chunky-bar-copper.")(in);
     fs::copy(scratch / "twice", in, fs::copy_options::recursive);
   });
-  says("holds no finished tiles", without("chunky-bar-copper."));
+  says("has no finished tiles", without("chunky-bar-copper."));
   says("seed = 77", [&](const fs::path& in) {
     fs::copy(scratch / "other", in,
              fs::copy_options::overwrite_existing | fs::copy_options::recursive);
   });
   says(second + ".run.json",
        [&](const fs::path& in) { fs::remove(in / (second + ".run.json")); });
-  says("does not tell how its tile was made", [&](const fs::path& in) {
+  says("does not record how its tile was made", [&](const fs::path& in) {
     fs::copy_file(in / (first + ".run.json"), in / (second + ".run.json"),
                   fs::copy_options::overwrite_existing);
   });
-  says("does not tell", [&](const fs::path& in) { put(in / (third + ".run.json"), "[]"); });
+  says("does not record", [&](const fs::path& in) { put(in / (third + ".run.json"), "[]"); });
   says("is not the size of its tile", [&](const fs::path& in) {
     for (const char* ending : {".img", ".img.hdr"})
       fs::copy_file(in / (first + ending), in / (third + ending),
                     fs::copy_options::overwrite_existing);
   });
   says("bytes", [&](const fs::path& in) { fs::resize_file(in / (third + ".img"), 100); });
-  says("record that is not ours", [&](const fs::path& in) {
+  says("record that malus render did not write", [&](const fs::path& in) {
     for (const std::string& part : {first, second, third}) {
       auto word = record(in / (part + ".run.json"));
       word["width"] = "wide";
@@ -126,7 +126,7 @@ TEST(CommandMergeInvariant, WhatDoesNotBelongTogetherIsRefused) {
   // truth comes after light: what the light has become by then must go as well
   says("bytes",
        [&](const fs::path& in) { fs::resize_file(in / (second + ".truth.img"), 100); });
-  says("is not what its record says", [&](const fs::path& in) {
+  says("differs from its record", [&](const fs::path& in) {
     std::fstream file(in / (third + ".truth.img"),
                       std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(4711);
@@ -176,7 +176,7 @@ struct Flight {
   }
 };
 
-/// A record without what tells a merge from a single run.
+/// A record without the entries that distinguish a merge from a single run.
 nlohmann::json bare(const fs::path& path) {
   nlohmann::json made = record(path);
   for (const char* key : {"command", "seconds", "merged_from"}) made.erase(key);
@@ -243,7 +243,7 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
   // 27 tiles in 7 parts: the first six have four. By hand: part 3 has places 8 to 11 of the row, part 6 places 20 to
   // 23; so one tile of frame 0, three of frame 1 and four of frame 2
   for (const char* word : {"lacks 8 of 27 tiles", "1 of frame 0", "3 of frame 1",
-                           "4 of frame 2", "part 3,6 of 7 is not there"})
+                           "4 of frame 2", "part 3,6 of 7 does not exist"})
     EXPECT_NE(refused.err.find(word), std::string::npos) << word << " in " << refused.err;
   const std::string command = refused.err.substr(refused.err.find("; run ") + 6);
   EXPECT_EQ(command,
@@ -259,7 +259,8 @@ TEST(CommandMergeInvariant, TheCommandForMissingPartsMakesThem) {
             std::vector<std::string>{});
 }
 
-// mpirun's processes know their number from the environment: the first merges, the others leave it to that one.
+// mpirun's processes get their number from the environment: the first merges, the others leave
+// it to that one.
 TEST(CommandMergeInvariant, OneOfSeveralProcessesMerges) {
   const Flight flight;
   for (int k : {1, 2})
@@ -309,7 +310,7 @@ TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
   const Flight flight;
   for (int k = 1; k <= 3; ++k)
     flight.render(fmt::format("--out good --write cube,truth --part {}/3", k));
-  // each part has a frame of its own, so that only the film as a whole can tell
+  // each part has its own frame, so that only the whole film shows it
   flight.render("--out seed --write cube,truth --seed 7 --part 2/3");
   flight.render("--out exr --write cube,truth,exr --part 2/3");
   flight.render("--out four --write cube,truth --part 2/4");
@@ -363,31 +364,32 @@ TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
     };
   };
   says("chunky-bar.obj\"] = \"00000000\": is not that of ", mesh("00000000"));
-  says("s.0001: is there in rectangles and in equal parts", with("rectangle"));
+  says("s.0001: exists both in rectangles and in equal parts", with("rectangle"));
   says("scene_crc32 = ", rewritten(second, "scene_crc32", "00000000"));
   says("program = \"malus 0.0.1\"", rewritten(second, "program", "malus 0.0.1"));
   says("sources = \"0123456789ab\": is not that of ",
        rewritten(second, "sources", "0123456789ab"));
-  says("sources = \"0123456789ab\": is not what merges, malus 0.1.0 of the sources " +
-           record(flight.scratch / "good" / second)["sources"].get<std::string>(),
-       [&](const fs::path& in) {
-         for (int k : {1, 2, 3})
-           rewritten(fmt::format("s.{:04}.part-{}-of-3.run.json", k - 1, k), "sources",
-                     "0123456789ab")(in);
-       });
-  says("does not tell how its tiles were dealt", rewritten(second, "part", 3));
-  says("is no frame of part 2 of 3", rewritten(second, "frame", 2));
-  says("record that is not ours", rewritten(second, "frame", "x"));
+  says(
+      "sources = \"0123456789ab\": is not the program that merges, malus 0.1.0 of the "
+      "sources " +
+          record(flight.scratch / "good" / second)["sources"].get<std::string>(),
+      [&](const fs::path& in) {
+        for (int k : {1, 2, 3})
+          rewritten(fmt::format("s.{:04}.part-{}-of-3.run.json", k - 1, k), "sources",
+                    "0123456789ab")(in);
+      });
+  says("does not record how its tiles were distributed", rewritten(second, "part", 3));
+  says("is not a frame of part 2 of 3", rewritten(second, "frame", 2));
+  says("record that malus render did not write", rewritten(second, "frame", "x"));
   // a cube is looked at when its frame is put together: the frames before it are whole, of this one there is nothing
   fs::remove_all(flight.scratch / "spoilt");
   fs::copy(flight.scratch / "good", flight.scratch / "spoilt");
   put(flight.scratch / "spoilt/s.0001.part-2-of-3.truth.img",
       std::string(contents(flight.scratch / "good/s.0001.part-2-of-3.truth.img").size(), 'x'));
   const Outcome damaged = flight.merge("spoilt");
-  EXPECT_EQ(
-      damaged.err,
-      "spoilt/s.0001.part-2-of-3.truth.img: is not what its record says; render this part "
-      "again\n");
+  EXPECT_EQ(damaged.err,
+            "spoilt/s.0001.part-2-of-3.truth.img: differs from its record; render this part "
+            "again\n");
   EXPECT_TRUE(fs::exists(flight.scratch / "spoilt/s.0000.run.json"));
   for (const char* name : {"s.0001.run.json", "s.0001.img", "s.0001.img.part", "s.0002.img"})
     EXPECT_FALSE(fs::exists(flight.scratch / "spoilt" / name)) << name;
@@ -396,15 +398,15 @@ TEST(CommandMergeInvariant, PartsOfAnotherRunAreRefused) {
 TEST(CommandMergeIdentity, NumbersOfPartsThatCannotBeAreRefused) {
   const Flight flight;
   for (const auto& [part, word] :
-       {std::pair{"4/3", "is none of 3 parts"},
-        {"0/3", "is none of 3 parts"},
-        {"0/0", "is none of 0 parts"},
+       {std::pair{"4/3", "is not one of 3 parts"},
+        {"0/3", "is not one of 3 parts"},
+        {"0/0", "is not one of 0 parts"},
         {"1/28", "makes more parts than 3 frames have tiles, 27"},
         {"1/18446744073709551615", "makes more parts than 3 frames have tiles, 27"},
-        {"1/18446744073709551616", "is larger than any number here may be"},
+        {"1/18446744073709551616", "is too large"},
         {"1/2/3", "must have 2 numbers"},
-        {"/3", "is not made of whole numbers"},
-        {"-1/3", "is not made of whole numbers"}}) {
+        {"/3", "does not consist of whole numbers"},
+        {"-1/3", "does not consist of whole numbers"}}) {
     const Outcome outcome =
         malusIn(flight.scratch.path, std::string("render s.json --out o --part ") + part);
     EXPECT_EQ(outcome.code, 2) << part;

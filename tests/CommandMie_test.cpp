@@ -73,7 +73,8 @@ TEST(CommandMiePublished, MatrixOfEvansAndStephens) {
   }
 }
 
-// The file that malus mie writes says what its matrix says; what stands after the series is below 1e-9.
+// The file of malus mie has the same scattering as its matrix; terms beyond the series are
+// below 1e-9.
 TEST(CommandMieIdentity, GreekConstantsAreTheMatrix) {
   const Scratch scratch;
   const std::string spheres =

@@ -53,7 +53,7 @@ TEST(CommandProductsInvariant, TwoRunsDoNotMixTheirProducts) {
     const OutputLock held(scratch / ".x.products.lock", 0, 0);
     const Outcome second = malusIn(scratch.path, "products x.img");
     EXPECT_EQ(second.code, 2);
-    EXPECT_NE(second.err.find("is held by another malus"), std::string::npos) << second.err;
+    EXPECT_NE(second.err.find("is in use by another malus"), std::string::npos) << second.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "x.products.img"));
     EXPECT_EQ(malusIn(scratch.path, "products x.img --out elsewhere").code, 0);
   }
@@ -132,8 +132,9 @@ TEST(CommandProductsIdentity, AFilmHasOneScale) {
 }
 
 // Matt ground of 0.2 and 0.6, looked at from the nadir, under two skies, as truth and as measured. The mean over the
-// picture may differ by five of its own standard errors, beside the 3e-6 of a sky's table and sum; these errors are below a
-// hundredth, so that a wrong pi or cosine is seen. The last is the control: the same ground as radiance is far from it.
+// picture may differ by five of its own standard errors, beside the 3e-6 of a sky's table and
+// sum; these errors are below a hundredth, so that a wrong pi or cosine is noticed. The last is
+// the control: the same ground as radiance is far from it.
 TEST(CommandProductsIdentity, MattGroundHasItsReflectance) {
   const Scratch scratch;
   const auto judge = [&](const std::string& sky, const std::string& file) {
@@ -224,7 +225,7 @@ TEST(CommandProductsIdentity, InfoSaysWhatIsThere) {
   EXPECT_NE(outcome.out.find("S3 650"), std::string::npos);
 }
 
-// The table shows five digits of what the JSON holds whole; a number that the two tell differently would be a lie of one.
+// The table shows five digits of the JSON's numbers; where the two differ, one is wrong.
 TEST(CommandProductsIdentity, InfoSaysTheSameAsJSON) {
   const Scratch scratch;
   const auto bands = SpectralGrid::make({450});
@@ -309,7 +310,8 @@ TEST(CommandProductsIdentity, BadCubesAreOneLineAndLeaveNothing) {
   EXPECT_NE(complaint("products x.img --band -1").find("--band = -1: is not a band"),
             std::string::npos);
   EXPECT_NE(complaint("products x.img --band 0").find("from 1 to 3"), std::string::npos);
-  EXPECT_NE(complaint("products x.img --band 1 --all").find("beside --all"), std::string::npos);
+  EXPECT_NE(complaint("products x.img --band 1 --all").find("conflicts with --all"),
+            std::string::npos);
   EXPECT_NE(complaint("products x.img --interleave big").find("bip (by pixel)"),
             std::string::npos);
   std::filesystem::resize_file(scratch / "x.img", 100);

@@ -149,7 +149,7 @@ TEST(CommandRenderIdentity, CtrlCSaysHowToGoOnAndTheRestGivesTheSameBits) {
   EXPECT_EQ(WEXITSTATUS(status), 130);
   const std::string said = place.file("err");
   EXPECT_NE(said.find("stopped at"), std::string::npos) << said;
-  EXPECT_NE(said.find("malus render s.json --out b --resume goes on from here"),
+  EXPECT_NE(said.find("malus render s.json --out b --resume continues from here"),
             std::string::npos)
       << said;
   ASSERT_EQ(place.render("--out b --resume").code, 0);
@@ -201,7 +201,7 @@ TEST(CommandRenderIdentity, AResumeUnderAnotherSeedIsRefused) {
   ASSERT_TRUE(WIFSIGNALED(interrupt(place, SIGKILL)));
   const Outcome other = place.render("--out b --resume --seed 77");
   EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("belongs to another cube"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("belongs to a cube other than"), std::string::npos) << other.err;
 }
 
 TEST(CommandRenderIdentity, ADryRunWritesNothing) {
@@ -238,7 +238,8 @@ const std::vector<BadScene> bad_scenes{
      "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
     {R"({"platform": null})", "lacks \"platform\"; give where the sensor stands"},
     {R"({"geometry": [{"obj": "missing.obj"}]})",
-     "geometry[0].obj = \"missing.obj\": is not there; name a file; relative paths begin "
+     "geometry[0].obj = \"missing.obj\": does not exist; give the name of a file; relative "
+     "paths begin "
      "in "},
     {R"({"geometry": [{"obj": "nan.obj"}]})", "nan.obj"},
     {R"({"geometry": []})", "geometry = []: is not allowed here"},
@@ -247,9 +248,9 @@ const std::vector<BadScene> bad_scenes{
     {R"({"sensor": {"height": -4}})", "sensor.height = -4: is not allowed here"},
     {R"({"sensor": {"field_of_view_deg": 180}})",
      "sensor.field_of_view_deg = 180 deg: is not allowed here"},
-    {R"({"sensor": {"pixel_pitch_um": 5}})", "does not say in one way what it sees"},
+    {R"({"sensor": {"pixel_pitch_um": 5}})", "does not specify its field of view exactly once"},
     {R"({"platform": {"position_m": [-2, 2, 0.5]}})",
-     "the camera of frame 0 stands inside of a solid"},
+     "the camera of frame 0 is inside a solid"},
     {R"({"platform": {"position_m": [0, 9, -1]}})",
      "the camera of frame 0 is at z = -1 m, on or below the ground"},
     {R"({"platform": {"position_m": [0, 9, 0], "up": [0, 0, 1]}})",
@@ -263,7 +264,7 @@ const std::vector<BadScene> bad_scenes{
      "missing.csv"},
     {R"({"materials": {"ground": {"reflectance": 1.2}}})",
      "materials.ground.reflectance = 1.2: must be 0 to 1"},
-    {R"({"materials": {"ground": {"sigma": 0.2}}})", "is no parameter of lambertian"},
+    {R"({"materials": {"ground": {"sigma": 0.2}}})", "is not a parameter of lambertian"},
     {R"({"materials": {"copper-010": {"sigma": null}}})", "lacks \"sigma\"; give roughness"},
     {R"({"materials": {"copper-010": {"model": "torrence-sparow"}}})",
      "did you mean torrance-sparrow?"},
@@ -283,11 +284,11 @@ const std::vector<BadScene> bad_scenes{
     {R"({"materials": {"ground": {"model": "beard-maxwell", "reflectance": null, "n": 1.304, "k": 7.479,
          "bias": 0.03, "sigma": 0.17, "temperature_K": 300}}})",
      "which leaves no emissivity; leave it out"},
-    {R"({"sky": {"temperature_K": 230}})", "does not say in one way how bright it is"},
+    {R"({"sky": {"temperature_K": 230}})", "does not specify its radiance exactly once"},
     {R"({"sun": {"irradiance_W_m2_nm": 0}, "sky": {"radiance_W_m2_sr_nm": 0}})",
      "has no light"},
     {R"({"sun": {"time": "2001-06-10T17:06:00Z"}})",
-     "does not say in one way where the sun stands"},
+     "does not specify the sun's position exactly once"},
     {R"({"bands": {"wavelength_nm": [450, 550, 450]}})",
      "bands = {\"wavelength_nm\":[450,550,450]}: has the same band at 450 nm twice"},
     {R"({"bands": {"wavelength_nm": [-550]}})",
@@ -314,35 +315,36 @@ const std::vector<BadScene> bad_scenes{
      "platform.velocity_m_s: does not belong to a platform of the kind \"fixed\"; leave it "
      "out, or"},
     {R"({"sky": {"model": "rayleigh"}})",
-     "sky.radiance_W_m2_sr_nm = 0.05: is no parameter of rayleigh; known are: tau, "},
+     "sky.radiance_W_m2_sr_nm = 0.05: is not a parameter of rayleigh; choose from: tau, "},
     {R"({"geometry": [{"ground": {"z_m": 0, "material": "ground"}, "scale": 2}]})",
      "geometry[0].scale: does not belong to a ground"},
     {R"({"bands": {"wavelength_nm": [0.55]}})",
      "begins at 0.55 nm; give nanometres, 10 or more; 0.55 um is 550"},
     {R"({"radiometry": {"mis": 1}})",
      "radiometry.mis = 1: is not allowed here; give true or false"},
-    {R"({"sensor": {"polarimeter": {}}})", "does not say in one way where its filters are"},
+    {R"({"sensor": {"polarimeter": {}}})",
+     "does not specify the place of its filters exactly once"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"polarizer_deg": 0}, {"polarizer_deg": 45}, {"polarizer_deg": 90}]}}})",
-     "has filters that cannot tell S3; add filters that answer to it (a retarder before a "
+     "has filters that do not measure S3; add filters that depend on it (a retarder before a "
      "polarizer, for S3), or write "
      "\"recover\": [\"S0\", \"S1\", \"S2\"]"},
     {R"({"sensor": {"polarimeter": {"mosaic": [[{"polarizer_deg": 0}, {"polarizer_deg": 45}]], "recover": ["S0"]}}})",
-     "has filters that cannot tell S0"},
+     "has filters that do not measure S0"},
     {R"({"sensor": {"polarimeter": {"mosaic": [[{}, {}], [{}]], "recover": []}}})",
      "mosaic[1]"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"name": "a"}, {"name": "a"}], "recover": []}}})",
-     "has the name a of another camera"},
+     "has the name a, which another camera has"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"retarder_deg": 0}], "recover": []}}})",
-     "has half a retarder"},
+     "has an incomplete retarder"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"polariser_deg": 0}], "recover": []}}})",
      "polariser_deg: is not a known key here; did you mean polarizer_deg?"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"transmittance": 1.5}], "recover": []}}})",
      "at most 1"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[1, 0, 0, 0]]}], "recover": []}}})",
-     "is no Mueller matrix"},
+     "is not a Mueller matrix"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"mueller": [[0.5, 0.6, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]}],
          "recover": []}}})",
-     "reads less than nothing of some light"},
+     "has a negative reading for some light"},
     {R"({"sensor": {"polarimeter": {"cameras": [{"calibration": "missing.img"}], "recover": []}}})",
      "missing.img"},
     {R"({"sensor": {"polarimeter": {"cameras": [{}], "recover": ["S4"]}}})",
@@ -375,7 +377,7 @@ TEST(SceneIdentity, EveryBadSceneIsAnsweredByOneLine) {
   }
 }
 
-// The program does with each of these answers the same; a few of them show what.
+// The program treats each of these cases alike; a few of them show how.
 TEST(CommandRenderIdentity, BadScenesAreAnsweredByOneLineAndNoFile) {
   for (std::size_t i = 0; i < bad_scenes.size(); i += 6) {
     json scene = smallScene();
@@ -435,7 +437,7 @@ TEST(CommandRenderIdentity, BadFlagsAreAnsweredByOneLineAndNoFile) {
   }
 }
 
-// A file of limited size stands for a full disk: the same system call fails.
+// A file of limited size imitates a full disk: the same system call fails.
 TEST(CommandRenderIdentity, AFullDiskIsToldBeforeTheFirstRayAndLeavesNothing) {
   const Workplace place(smallScene(400));
   const Outcome outcome =
@@ -590,8 +592,10 @@ TEST(PolarimeterIdentity, AMosaicIsRightWhereTheSceneIsEvenAndWrongAtItsEdges) {
   // over 1e-4 degrees the copper's lobe changes by 2e-6 / sigma of itself
   const double even = 1e-5 * brightest(light);
   EXPECT_LT(farthest(withoutS3(light), back), even);
-  EXPECT_GT(std::abs(light.data[2]), 100 * even);  // the sun stands in the diagonal
-  // linear polarisers: S3 is neither in the cube nor in the pictures
+  EXPECT_GT(
+      std::abs(light.data[2]),
+      100 *
+          even);  // the sun is in the diagonal of the linear polarisers: S3 is neither in the cube nor in the pictures
   EXPECT_EQ(back.header.channels.size(), 3u);
   EXPECT_NE(back.header.description.find("which measure S0, S1, S2"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(place.scratch / "a/s.recovered.S3.png"));
@@ -843,7 +847,7 @@ TEST(SceneIdentity, BandsThatCannotBeToldApartAreRefused) {
       has(with(R"({"wavelength_nm": [650, 550, 650]})"),
           "has the same band at 650 nm twice; leave one of them out, or give both a name"));
   EXPECT_TRUE(has(with(R"([{"center_nm": 650, "name": "a"}, {"center_nm": 550, "name": "a"}])"),
-                  "bands[1].name = \"a\": is the name of another band"));
+                  "bands[1].name = \"a\": is also the name of another band"));
   EXPECT_EQ(with(R"([{"center_nm": 650, "name": "a"}, {"center_nm": 650, "name": "b"}])"),
             "none");
   for (const char* bad : {"a,b", "a}", "a/b", " a"})
@@ -1107,13 +1111,12 @@ TEST(CommandRenderIdentity, ProgressAsJSONCountsTheTilesAndEndsWithTheRun) {
   EXPECT_EQ(frame, 1u);
   EXPECT_EQ(told.back()["state"], "done");
   EXPECT_EQ(told.back()["frames"], 2);
-  // a scheduler must be able to tell words from objects: the default are words
+  // a scheduler must distinguish text from objects: text is the default
   EXPECT_TRUE(json::parse(place.render("--out b").err, nullptr, false).is_discarded());
   const Outcome unknown = place.render("--out c --progress xml");
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(
-      unknown.err,
-      "command line: --progress = xml: is no way to show the progress; give text or json\n");
+  EXPECT_EQ(unknown.err,
+            "command line: --progress = xml: is not a style of progress; give text or json\n");
 }
 
 TEST(CommandRenderIdentity, ProgressAsJSONTellsHowToGoOnAfterAStop) {
@@ -1180,7 +1183,7 @@ json largeScene(int side, int bands) {
   return scene;
 }
 
-/// What is told of the memory of a run, in bytes.
+/// The reported memory of a run, in bytes.
 double memoryIn(const std::string& told) {
   std::smatch m;
   if (!std::regex_search(told, m, std::regex("memory    about ([0-9]+) MB"))) return -1;
@@ -1219,7 +1222,7 @@ TEST(CommandRenderInvariant, RowsThatOpenEXRCannotWriteAreKnownBeforeTheFirstRay
   const Workplace wide(scene);
   const Outcome named = wide.render("--write exr --dry-run");
   EXPECT_EQ(named.code, 2);
-  EXPECT_NE(named.err.find("exr: is for rows of 31250000 numbers"), std::string::npos)
+  EXPECT_NE(named.err.find("exr: allows rows of at most 31250000 numbers"), std::string::npos)
       << named.err;
   const Outcome usual = wide.render("--dry-run");
   EXPECT_EQ(usual.code, 0) << usual.err;
@@ -1247,7 +1250,8 @@ TEST(CommandRenderInvariant, TilesInTheFarCornersOfALargePictureTakeLittleMemory
   }
 }
 
-// As much as the dry run tells is enough for a picture whose cube is larger, in all formats. The system also counts what
+// The memory that the dry run reports is enough for a picture whose cube is larger, in all
+// formats. The system also counts what
 // libraries reserve and never touch: Embree 128 MiB, each thread its stack of 8 MiB, some of them buffers.
 TEST(CommandRenderInvariant, TheMemoryThatIsToldIsEnough) {
   if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";

@@ -120,7 +120,8 @@ TEST(CommandSkyIdentity, PathAndGroundAddUp) {
   EXPECT_NE(grey.number(0, "path_U"), 0);
 }
 
-// The neutral points of the picture are zeros of Q in the meridian that malus sky answers for directions.
+// The neutral points of the picture are zeros of Q in the meridian that malus sky computes for
+// directions.
 TEST(CommandSkyInvariant, ThePictureMarksTheNeutralPoints) {
   const Scratch scratch;
   for (const std::string& aerosol :
@@ -304,7 +305,7 @@ TEST(CommandSkyInvariant, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_NE(malusIn(scratch.path, "sky --input bad.csv").err.find("bad.csv:3"),
             std::string::npos);
   EXPECT_NE(malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --irradiance bright")
-                .err.find("is no irradiance; give pi, astm-e490 or a number"),
+                .err.find("is not an irradiance; give pi, astm-e490 or a number"),
             std::string::npos);
   const std::string choices =
       malusIn(scratch.path, "sky --tau 0.5 --mu0 0.5 --mu 0.5 --convention coulson").err;
@@ -326,7 +327,8 @@ TEST(CommandSkyIdentity, DepolarisationMayBeSpeltInTwoWays) {
       "tau,mu0,mu,phi_deg,depolarization,depolarisation\n0.5,0.6,0.4,90,0,0\n");
   const Outcome twice = malusIn(scratch.path, "sky --input two.csv");
   EXPECT_EQ(twice.code, 2);
-  EXPECT_EQ(twice.err, "two.csv: depolarisation: stands beside depolarization; give it once\n");
+  EXPECT_EQ(twice.err,
+            "two.csv: depolarisation: conflicts with depolarization; give it once\n");
 }
 
 // Each number of a question by itself, the others as they should be.

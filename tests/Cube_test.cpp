@@ -174,7 +174,7 @@ TEST(CubeViewIdentity, ABadCubeIsRefusedAsByItsReader) {
   }
 }
 
-// A file with holes stands for a large cube: 1024 x 1024 pixels of 96 channels are 403 MB.
+// A file with holes imitates a large cube: 1024 x 1024 pixels of 96 channels are 403 MB.
 TEST(CubeViewInvariant, ACubeMayBeLargerThanTheMemoryOfAProcess) {
   if (!memory_can_be_limited) GTEST_SKIP() << "a sanitizer holds more memory than the limit";
   constexpr std::size_t side = 1024, many = 96;
@@ -300,7 +300,8 @@ TEST(CubeIdentity, AnotherCubeIsNotGoneOnWith) {
 
 TEST(CubeIdentity, BadCubesAreNamed) {
   const Scratch scratch;
-  EXPECT_NE(complaint(scratch / "none.img").find("none.img: is not there"), std::string::npos);
+  EXPECT_NE(complaint(scratch / "none.img").find("none.img: does not exist"),
+            std::string::npos);
   EXPECT_NE(complaint(scratch.path).find("is a directory"), std::string::npos);
   put(scratch / "alone.img", "numbers");
   EXPECT_NE(complaint(scratch / "alone.img").find("alone.img: has no .hdr beside it"),
@@ -443,7 +444,7 @@ TEST(QuicklooksIdentity, DrawsEveryQuantityWithItsScale) {
   EXPECT_EQ(in->spec().width, int(width) + 84);
   std::vector<unsigned char> rgb((width + 84) * height * 3);
   ASSERT_TRUE(in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data()));
-  EXPECT_EQ(rgb[1], 255);  // the green of what is no number
+  EXPECT_EQ(rgb[1], 255);  // the green of NaN
   EXPECT_EQ(rgb[0], 0);
   EXPECT_THROW(quicklooks(cube, 3, scratch / "q"), MathError);
 }

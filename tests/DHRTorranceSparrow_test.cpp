@@ -135,7 +135,7 @@ TEST(DHRTorranceSparrowIdentity, RefusesWhatIsNoAngleAndNoRoughness) {
 }
 
 TEST(DHRTorranceSparrowInvariant, TableErrsByLessThanItPromises) {
-  // Rows between nodes, where linear interpolation is worst; 1e-5 is the class's promise.
+  // Rows between nodes, where linear interpolation is worst; the class promises 1e-5.
   double worst = 0;
   for (const double sigma : {0.0103, 0.0249, 0.0511, 0.1003, 0.2009, 0.3011, 0.4511, 0.5991})
     for (double theta_deg = 0.05; theta_deg < 90; theta_deg += 0.61)

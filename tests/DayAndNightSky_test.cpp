@@ -193,7 +193,7 @@ TEST(DayAndNightSkyRefusal, SaysWhatIsWrong) {
   sky = dayAndNight(), sky.erase("glow_optical_depth");
   has(sky, "lacks \"glow_optical_depth\"");
   sky = dayAndNight(), sky["aerosol_tau"] = 0.2;
-  has(sky, "sky.aerosol_tau: belongs to no aerosol");
+  has(sky, "sky.aerosol_tau: needs an aerosol");
 }
 
 TEST(DayAndNightSkyIdentity, TheRecordStatesWhatIsNeglected) {

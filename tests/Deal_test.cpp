@@ -1,4 +1,4 @@
-// Tiles that are dealt to several runs (nw/files/Deal.nw).
+// Tiles that are distributed to several runs (nw/files/Deal.nw).
 #include "malus/files/Deal.hpp"
 
 #include <gtest/gtest.h>

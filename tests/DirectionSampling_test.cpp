@@ -289,7 +289,7 @@ TEST(DirectionSamplingInvariant,
   EXPECT_LT(inside(uniformGridSampling(40, 20, pi / 2)), 4);
 }
 
-// The weakness that the chapter tells of: a lobe narrower than a cell, centred on an edge of
+// The weakness that the chapter describes: a lobe narrower than a cell, centred on an edge of
 // the grid.
 TEST(DirectionSamplingIdentity, AdaptiveSeesHalfOfANarrowLobeOnAnEdge) {
   const DirectionScore lobe = [](double zenith, double azimuth) {

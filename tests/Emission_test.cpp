@@ -89,7 +89,7 @@ TEST(EmissionIdentity, PlanckAtItsEnds) {
 }
 
 // Facets of 1e-4: the Fresnel factors of a tenth of a milliradian around are averaged, which changes them by less than
-// 1e-4 up to 85 deg; shadowing is left out, and a facet seen edge-on is not asked for.
+// 1e-4 up to 85 deg; shadowing is left out, and a facet seen edge-on is not evaluated.
 TEST(EmissionIdentity, MirrorsEmitWhatFresnelLeaves) {
   for (const auto& [n, k] : {std::pair{1.5, 0.0}, {1.218, 0.0508}, {8.31, 63.0}, {0.405, 2.95}})
     for (const double deg : {0.0, 20.0, 45.0, 60.0, 75.0, 85.0}) {
@@ -218,8 +218,9 @@ TEST(EmissionIdentity, RefusesWhatCannotEmit) {
   EXPECT_THROW(Emission(*lambert(0.5), -1), MathError);
 }
 
-// The table against the integral between its nodes, copper's narrow peak above the horizon included; linear
-// interpolation on 128 nodes errs by an eighth of the second difference.
+// The table against the integral between its nodes, copper's narrow peak above the horizon
+// included; linear interpolation on 128 nodes has an error of an eighth of the second
+// difference.
 TEST(EmissionIdentity, TheTableIsTheIntegral) {
   const BRDFTorranceSparrow copper(8.31, 63.0, 1e-4, {Shadowing::smith, DiffuseTerm::none});
   const Emission emission(copper, 300);
@@ -264,7 +265,7 @@ TEST(EmissionInvariant, LookingUpAllocatesNothing) {
 }
 
 // A closed room of one temperature, whatever its walls are made of, is a black body and unpolarised. Six reflections
-// are followed; what the seventh would bring is below the product of the walls' reflectances.
+// are followed; the contribution of the seventh is below the product of the walls' reflectances.
 namespace {
 constexpr double room_K = 6000;  // hot enough to glow in the room's one band of 550 nm
 

@@ -260,7 +260,7 @@ AllSeries recoverSeeds(bool mosaic, Without without) {
     if (without == Without::neighbours) made.errors = image.errors;
     for (std::size_t i = 3; without == Without::neighbours && i < made.errors.size();
          i += numbers)
-      made.errors[i] = 0;  // S3 is not told
+      made.errors[i] = 0;  // S3 is not measured
     std::vector<double> stokes, errors;
     for (std::size_t y = 0; y < image.height; y += step)
       for (std::size_t x = 0; x < image.width; x += step) {
@@ -302,7 +302,7 @@ TEST(ErrorBarsInvariant, NegativeControlsBehindFiltersClaimTheWrongSpread) {
     }
 }
 
-// Cube, picture and products of what filters tell, and the same bits however they are made.
+// Cube, picture and products of readings behind filters, with the same bits however they are made.
 TEST(ErrorBarsIdentity, FilesBehindFiltersHaveTheirErrors) {
   json text = filtered(true);
   text["sensor"]["width"] = 40, text["sensor"]["height"] = 33;
@@ -370,7 +370,7 @@ TEST(ErrorBarsIdentity, FilesBehindFiltersHaveTheirErrors) {
   EXPECT_FALSE(std::filesystem::exists(place.scratch / "one/s.recovered.error.img"));
 }
 
-// The samplings that are drawn at random tell their error, and those of the thesis's grids are refused.
+// Random samplings measure their error, and the thesis's grids are refused.
 TEST(ErrorBarsInvariant, RandomDirectionsTellTheirErrorAndGridsAreRefused) {
   json text = copper(4, 3);
   text["radiometry"]["sampling"] = "random";
@@ -519,7 +519,7 @@ TEST(ErrorBarsInvariant, AKilledRenderIsResumedToTheSameErrors) {
   EXPECT_EQ(place.file("a/s.img"), place.file("b/s.img"));
   EXPECT_EQ(place.file("a/s.error.img"), place.file("b/s.error.img"));
   EXPECT_NE(
-      place.malus("render s.json --batches 20 --out b --resume").err.find("there already"),
+      place.malus("render s.json --batches 20 --out b --resume").err.find("exists already"),
       std::string::npos);
 }
 
@@ -591,9 +591,10 @@ TEST(ErrorBarsIdentity, WhatCannotBeIsRefusedWithTheRemedy) {
   };
   for (const char* none : {"0", "4097"})
     refused(fmt::format("render s.json --batches {} --out a", none),
-            fmt::format("--batches = {}: is no number of batches; give a number from 1 to 4096",
+            fmt::format("--batches = {}: is not a number of batches; give a number from 1 to "
+                        "4096",
                         none));
-  refused("render s.json --batches 2.5 --out a", "is no number of batches");
+  refused("render s.json --batches 2.5 --out a", "is not a number of batches");
   refused("render s.json --batches -2 --out a", "--batches");
   refused("render grid.json --batches 8 --out a",
           "sampling is grid-rotated; set radiometry.sampling to importance or random");
@@ -604,7 +605,9 @@ TEST(ErrorBarsIdentity, WhatCannotBeIsRefusedWithTheRemedy) {
   EXPECT_EQ(place.malus("render grid.json --batches 1 --out g").code, 0);
   ASSERT_EQ(place.malus("render s.json --batches 2 --out a").code, 0);
   ASSERT_EQ(place.malus("render s.json --out b").code, 0);
-  refused("products b/s.img --debias", "needs b/s.error.img, which is not there; render with");
+  refused("products b/s.img --debias",
+          "needs b/s.error.img, which does not exist; render "
+          "with");
   std::filesystem::copy(place.scratch / "a/s.error.img", place.scratch / "b/s.error.img");
   std::filesystem::copy(place.scratch / "a/s.error.img.hdr",
                         place.scratch / "b/s.error.img.hdr");

@@ -54,8 +54,8 @@ TEST(ErrorIdentity, PlaceIsKept) {
 TEST(ErrorIdentity, OffersTheNearestNameOnlyWhenItIsNear) {
   const std::vector<std::string> known{"torrance-sparrow", "lambertian"};
   EXPECT_EQ(didYouMean("torrence-sparow", known),
-            "did you mean torrance-sparrow? known are: torrance-sparrow, lambertian");
-  EXPECT_EQ(didYouMean("phong", known), "known are: torrance-sparrow, lambertian");
+            "did you mean torrance-sparrow? choose from: torrance-sparrow, lambertian");
+  EXPECT_EQ(didYouMean("phong", known), "choose from: torrance-sparrow, lambertian");
 }
 
 // A third of the letters and one more may be wrong: three of six, two of three, one of two, and no
@@ -124,8 +124,8 @@ TEST(ErrorIdentity, ATextThatGrowsWhenItIsWrittenOutIsCutToo) {
   EXPECT_EQ(remedy.size(), 2 + 2000 + 3u);
 }
 
-// Control characters are all below 32, and 127; bytes that are no UTF-8 are written like them,
-// one by one, wherever they stand.
+// Control characters are all below 32, and 127; bytes that are not UTF-8 are written like them,
+// one by one, wherever they are.
 TEST(ErrorIdentity, ControlCharactersAndBrokenBytesAreSpelt) {
   const auto shown = [](const std::string& problem) {
     return std::string(InputError({}, "", problem, "").what());

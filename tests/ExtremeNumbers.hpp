@@ -1,5 +1,5 @@
-// Every numeric flag of a command at numbers that nobody means (nw/app/Command*.nw): the answer is finite, or one line
-// with exit code 2 and nothing else. Include after Program.hpp.
+// Every numeric flag of a command at extreme numbers (nw/app/Command*.nw): the result is finite, or
+// one line with exit code 2 and nothing else. Include after Program.hpp.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -48,5 +48,6 @@ inline void expectFiniteOrRefused(const std::filesystem::path& directory,
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     EXPECT_NE(outcome.err.find(flag), std::string::npos);
   }
-  EXPECT_LT(answered, static_cast<int>(extremeNumbers().size()));  // nan and inf are no numbers
+  EXPECT_LT(answered,
+            static_cast<int>(extremeNumbers().size()));  // nan and inf are not numbers
 }

@@ -12,8 +12,8 @@ using namespace malus;
 using namespace malus::testing;
 
 namespace {
-// Zeros and ones at 1024 Sobol points: an independent draw would scatter by sqrt(.2 * .8 / 1024) = .0125; the points are placed more
-// evenly, and a third of that is asked.
+// Zeros and ones at 1024 Sobol points: an independent draw would scatter by sqrt(.2 * .8 /
+// 1024) = .0125; the points are placed more evenly, and a third of that is required.
 constexpr double even = 0.004;
 const Model any = matt(0.5);
 

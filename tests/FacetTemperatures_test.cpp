@@ -101,7 +101,8 @@ TEST(FacetTemperaturesIdentity, OpenGroundIsASlab) {
     return SurfaceHeat{0.7 * (w.direct_W_m2 * up + w.diffuse_W_m2) + 0.95 * w.longwave_W_m2,
                        0.95, 5.7 + 3.8 * w.wind_m_s, w.air_K};
   };
-  // A half space forgets its beginning with the root of time, so the rest under the first day is made here as well.
+  // The initial state of a half space decays with the root of time, so the rest under the first
+  // day is made here as well.
   SurfaceHeat mean{0, 0.95, 0, 0};
   for (int i = 0; i < 144; ++i) {
     const SurfaceHeat f = flow(-6 * day_s + (i + 0.5) * 600);

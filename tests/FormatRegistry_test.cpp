@@ -48,7 +48,7 @@ TEST(FormatRegistryIdentity, ARenderLeavesTheFilesOfItsFormatsAndNoOthers) {
     EXPECT_EQ(namesIn(scratch / "o"), wanted) << chosen;
     std::filesystem::remove_all(scratch / "o");
   }
-  // several batches have errors, in a cube of their own and in other formats
+  // several batches have errors, in a separate cube and in other formats
   FrameShape with_errors = shape;
   with_errors.errors = true;
   const std::string chosen = "error,netcdf,pictures";
@@ -92,11 +92,11 @@ TEST(FormatRegistryInvariant, WhatIsWrittenDoesNotDependOnWhatIsNot) {
               std::size_t(output == "cube" || output == "truth"));
     for (const char* key : {"rays_followed", "unphysical_values", "scene_crc32"})
       EXPECT_EQ(record("one")[key], record("all")[key]) << key;
-    EXPECT_NE(malusIn(scratch.path, arguments + " --resume").err.find("is there already"),
+    EXPECT_NE(malusIn(scratch.path, arguments + " --resume").err.find("exists already"),
               std::string::npos);
-    // more is wanted: the frame is made again, and what there was stays
+    // more is requested: the frame is rendered again, and the older outputs stay
     EXPECT_NE(
-        malusIn(scratch.path, "render s.json --out one --resume").err.find("tells of no "),
+        malusIn(scratch.path, "render s.json --out one --resume").err.find("has no record of "),
         std::string::npos);
     EXPECT_EQ(namesIn(scratch / "one"), namesIn(scratch / "all")) << output;
     std::filesystem::remove_all(scratch / "one");
@@ -131,7 +131,8 @@ TEST(FormatRegistryInvariant, FormerResultsStay) {
   EXPECT_NE(contents(scratch / "o/s.img.hdr").find("seed 1"), std::string::npos);
 }
 
-// A sun that climbs makes the second frame brighter. On scales of their own the frames look alike; on the film's they do not, and a film that was
+// A sun that climbs makes the second frame brighter. On separate scales the frames look alike;
+// on the film's they do not, and a film that was
 // interrupted before it was drawn is drawn by --resume, in the same bits.
 TEST(FormatRegistryIdentity, AFilmHasOneScaleAndTheRecordsTellIt) {
   const Scratch scratch;
@@ -183,10 +184,10 @@ TEST(FormatRegistryIdentity, AScaleThatCannotBeIsRefused) {
        {std::pair{"--scale film --write pictures",
                   "--scale = film: needs the cubes of all frames"},
         {"--scale S0=1 --write exr",
-         "--scale = S0=1: is of no use without pictures; add pictures"},
+         "--scale = S0=1: has no effect without pictures; add pictures"},
         {"--scale S0=x", "--scale = x: is not a number"},
         {"--scale flim",
-         "--scale = flim: is no end of a picture's scale; write film, or NAME=END"}}) {
+         "--scale = flim: is not the end of a picture's scale; write film, or NAME=END"}}) {
     const Outcome outcome =
         malusIn(scratch.path, std::string("render s.json --out o ") + flags);
     EXPECT_EQ(outcome.code, 2) << flags;
@@ -200,10 +201,10 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
   put(scratch / "s.json", small_scene);
   const Outcome unknown = malusIn(scratch.path, "render s.json --out o --write exr,pictues");
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.err,
-            "command line: --write = pictues: is not an output of malus; did you mean "
-            "pictures? known "
-            "are: cube, error, exr, geotiff, ground, netcdf, pictures, truth\n");
+  EXPECT_EQ(
+      unknown.err,
+      "command line: --write = pictues: is not an output of malus; did you mean "
+      "pictures? choose from: cube, error, exr, geotiff, ground, netcdf, pictures, truth\n");
   EXPECT_EQ(
       malusIn(scratch.path, "render s.json --out o --write cube,zarr").err,
       "command line: --write = zarr: is not an output of malus; write netcdf, and turn it "
@@ -212,7 +213,7 @@ TEST(FormatRegistryIdentity, AnUnknownFormatIsRefusedBeforeAnythingIsWritten) {
             "command line: --formats: is now called --write; write --write\n");
   const Outcome twice = malusIn(scratch.path, "render s.json --out o --write exr,exr");
   EXPECT_EQ(twice.code, 2);
-  EXPECT_NE(twice.err.find("names exr twice"), std::string::npos) << twice.err;
+  EXPECT_NE(twice.err.find("gives exr twice"), std::string::npos) << twice.err;
   EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
 }
 
@@ -230,13 +231,13 @@ TEST(FormatRegistryIdentity, AFormatThatIsNotForSoManyBandsIsLeftOutOrRefused) {
   const Outcome named = malusIn(scratch.path, "render s.json --out o --write cube,exr");
   EXPECT_EQ(named.code, 2);
   EXPECT_EQ(named.err,
-            "command line: --write = exr: is for 4096 bands at most, and the scene has "
+            "command line: --write = exr: allows at most 4096 bands, but the scene has "
             "4097; leave it out\n");
   EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
   const Outcome usual = malusIn(scratch.path, "render s.json --out o");
   EXPECT_EQ(usual.code, 0) << usual.err;
   EXPECT_NE(
-      usual.err.find("the output exr is for 4096 bands at most, and the scene has 4097; it is "
+      usual.err.find("the output exr allows at most 4096 bands, but the scene has 4097; it is "
                      "left out"),
       std::string::npos)
       << usual.err;

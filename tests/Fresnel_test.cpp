@@ -253,7 +253,7 @@ RC_GTEST_PROP(FresnelIdentity, PseudoBrewsterAngleHasTheLeastRp, ()) {
   const double x = std::pow(std::sin(found), 2), e1 = n * n - k * k;
   const double e = n * n + k * k;  // |e|
   // The cubic that the literature prints, terms divided by |e|^2; near a real index the sine of
-  // the phase it stands for is of order k, and so are the terms that it was divided by.
+  // the phase that it represents is of order k, and so are the terms that it was divided by.
   RC_ASSERT(
       std::abs((1 - x) * (1 - x) * e * e - (3 - 2 * x) * x * x + 2 * e1 / (e * e) * x * x * x) <
       1e-12 * (1 + e * e) / std::min(1., 2 * n * k + (k == 0)));

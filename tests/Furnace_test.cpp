@@ -65,8 +65,9 @@ bool reported(const World& world, const RadiometryOptions& options) {
 }
 }  // namespace
 
-// The criterion, before any number: |S0 - 1| <= 1 % (beside 5 standard errors of chance), or the user is told so. And he is not told
-// without cause: what is reported is off by more than 1 %. The reported numbers themselves are means over turns.
+// The criterion, before any number: |S0 - 1| <= 1 % (beside 5 standard errors of chance), or
+// the user is warned. And no warning comes without cause: each reported scene is off by more
+// than 1 %. The reported numbers themselves are means over turns.
 TEST(FurnaceInvariant, AFlatWhiteCardIsWhiteOrReported) {
   const World world = plate(matt(1));
   std::size_t biased = 0;
@@ -127,7 +128,7 @@ TEST(FurnaceIdentity, PointsOfAGridDeviateFromTheMiddlesAsFarAsNamed) {
     }
 }
 
-// Random directions within 60 degrees find sin^2 60 = 3/4 of an even sky, and the trial says so.
+// Random directions within 60 degrees find sin^2 60 = 3/4 of an even sky, and the trial reports it.
 TEST(FurnaceIdentity, RandomDirectionsInAConeLeaveTheRestOut) {
   const World world = plate(matt(1));
   const RadiometryOptions cone{
@@ -166,8 +167,8 @@ TEST(FurnaceInvariant, AnEvenSkyThatDoesNotSaySoIsEvenAsWell) {
       }
 }
 
-// One to eight reflections in a white globe with a share a of its area open return 1 - (1 - a)^m of the sky. 7200 flat facets
-// stand for the globe: 2e-3.
+// One to eight reflections in a white globe with a share a of its area open return 1 - (1 -
+// a)^m of the sky. 7200 flat facets approximate the globe: 2e-3.
 TEST(FurnaceInvariant, AHollowReturnsWhatItMustReflectionByReflection) {
   const double opening = 70 * degree, share = (1 - std::cos(opening)) / 2;
   const World world = globe(opening, matt(1));
@@ -191,7 +192,8 @@ TEST(FurnaceInvariant, AHollowReturnsWhatItMustReflectionByReflection) {
 
 // A closed box whose walls reflect nine tenths and glow with the rest is black at every depth: after m reflections
 // 1 - 0.9^(m+1) of the black body's light is there, the same from everywhere, so that a grid has no edge to miss. Its bias counts
-// once for each reflection: 128 directions from every hit are off by 0.9 % each time, which no single plate would tell. The
+// once for each reflection: 128 directions from every hit are off by 0.9 % each time, which no
+// single plate shows. The
 // criterion is that of the card.
 TEST(FurnaceInvariant, AGlowingBoxUnderAGridIsRightOrReported) {
   constexpr double temperature_K = 6000, reflectance = 0.9;

@@ -69,7 +69,7 @@ TEST(FuzzInvariant, RandomChoicesAreOneLineOrASoundThing) {
     }
 }
 
-// The control: a door that lets something else than InputError through is noticed, and so is a line that is two.
+// The control: an exception other than InputError is noticed, and so is a message of two lines.
 TEST(FuzzInvariant, NegativeControlOtherExceptionsEscape) {
   EXPECT_THROW(malus::fuzzing::knock([] { throw std::out_of_range("a vector"); }),
                std::out_of_range);

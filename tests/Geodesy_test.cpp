@@ -133,7 +133,7 @@ TEST(RationalCameraInvariant, CamerasAreFittedToAHundredthOfAPixel) {
     EXPECT_LT(fit->worst_px, tolerance_px) << name;
     EXPECT_LE(fit->rms_px, fit->worst_px);
     RecordProperty(name, fmt::format("{:.3g}", fit->worst_px));
-    // a point of its own, by the camera alone
+    // a separate point, by the camera alone
     const auto ray = sensor.rayAt(33.3, 61.7, platform, 0);
     const CDVector p = ray.origin + ray.direction * ((47.0 - ray.origin.z) / ray.direction.z);
     const auto [x, y] = fit->pixel(earth.geodetic(p));

@@ -98,7 +98,8 @@ assert abs(x[0][1] - x[0][0]) > 1, "negative control: a pixel is more than a met
   }
 }
 
-// Aslant and through a lens there is no map, and GDAL takes latitude, longitude and height back to the pixel.
+// From an oblique view and through a lens there is no map, and GDAL takes latitude, longitude
+// and height back to the pixel.
 TEST(GeoreferenceIdentity, GdalFindsThePixelsOfALensByTheirPolynomials) {
   json scene = with("/platform", {{"position_m", {-300, 50, 502}}, {"look", {0.5, 0.1, -1}}});
   scene["sensor"]["distortion"] = {{"k1", -0.1}, {"k2", 0.02}, {"p1", 0.001}};
@@ -136,7 +137,8 @@ assert max(abs(at[0] - 0.5), abs(at[1] - 0.5)) > 0.5, "negative control: 50 m to
   }
 }
 
-// Parts that were dealt to two machines merge into the GeoTIFF and the header that one machine makes, to the bit.
+// Parts that were distributed to two machines merge into the GeoTIFF and the header that one
+// machine makes, to the bit.
 TEST(GeoreferenceInvariant, MergedPartsLieWhereTheWholeLies) {
   const Workplace whole(sceneAboveRochester()), parts(sceneAboveRochester());
   ASSERT_EQ(whole.render("--write cube,truth,geotiff").code, 0);
@@ -177,7 +179,7 @@ TEST(GeoreferenceIdentity, PlacesThatCannotBeAreRefused) {
   const Workplace place(sceneAboveRochester());
   const Outcome dealt = place.render("--part 1/2 --write cube,truth,ground");
   EXPECT_EQ(dealt.code, 2);
-  EXPECT_NE(dealt.err.find("names ground, which dealt parts do not have"), std::string::npos);
+  EXPECT_NE(dealt.err.find("lists ground, which equal parts do not have"), std::string::npos);
 }
 
 // The sensor of a scene: what it says, and what it refuses.
@@ -213,7 +215,7 @@ TEST(SensorsInScenesIdentity, BadSensorsAreRefusedAtTheirPlace) {
   const json pose{{"position_m", {0, 0, 500}}, {"look", {0, 0, -1}}};
   listed["platform"] = {{"poses", {pose, pose}}};
   listed["platform"]["poses"][1]["time_s"] = 1;
-  expectRefusal(listed, "do not say how the camera moves during the last exposure_time_s");
+  expectRefusal(listed, "do not specify how the camera moves during the last exposure_time_s");
   json staring = sceneAboveRochester();
   staring["platform"] = {{"path", "staring"},     {"start_m", {0, 0, 500}},
                          {"target_m", {0, 9, 0}}, {"velocity_m_s", {1, 0, 0}},
@@ -299,7 +301,7 @@ TEST(SensorsInScenesIdentity, BadPixelsAndCountsAreToldInTheRecord) {
   scene["sensor"]["polarimeter"]["bad_pixels"] = {{30, 4}};
   expectRefusal(scene, "bad_pixels[0]");
   scene["sensor"]["polarimeter"]["bad_pixels"] = {{1.5, 4}};
-  expectRefusal(scene, "is no pixel of the picture; give x from 0 to 29 and y from 0 to 19");
+  expectRefusal(scene, "is not a pixel of the picture; give x from 0 to 29 and y from 0 to 19");
   scene["sensor"]["polarimeter"]["bad_pixels"] = json::array();
   scene["sensor"]["polarimeter"]["noise"]["converter"]["bits"] = 40;
   expectRefusal(scene, "converter.bits = 40");

@@ -48,8 +48,8 @@ TEST(GroundHarmonicsByHand, LambertHasOneHarmonic) {
   EXPECT_DOUBLE_EQ(groundMatrix({0.3}, 0.5, 0.2, 1)[0], 0.3 / pi);
 }
 
-// Sixty harmonics of facets this rough, with a shadowing that has no kink, leave a millionth at these angles; the azimuths
-// are no nodes of the rule.
+// Sixty harmonics of facets this rough, with a shadowing that has no kink, leave a millionth at
+// these angles; the azimuths are not nodes of the rule.
 TEST(GroundHarmonicsInvariant, TheirSumIsTheMatrix) {
   constexpr int highest = 60;
   for (const AirGround& ground : {copper(), water()}) {

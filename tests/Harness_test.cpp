@@ -33,7 +33,7 @@ Item freshItem(const std::string& kind = "thesis") {
 
 Verdict last(const Item& item) { return item.claims().back().verdict; }
 
-// what the items of a small inventory do; each states claims of its own kind
+// what the items of a small inventory do; each states claims of one kind
 void everyVerdict(Item& item) {
   item.printed("good", "1.25", 1.2512);
   item.erratum("misprint", "104.07", "102.07", 102.068, "its error column");
@@ -266,7 +266,8 @@ TEST(HarnessInvariant, NegativeControlEveryAlterationOfTheCommittedVerdictsIsNot
   const auto invented = changes("T1,lost", "T1,new,erratum\nT1,lost");
   ASSERT_EQ(invented.size(), 1u);
   EXPECT_EQ(invented[0].now, "");
-  EXPECT_EQ(changes("T1,lost", "T1,new,\nT1,lost").size(), 1u);  // nobody looked, nothing ran
+  EXPECT_EQ(changes("T1,lost", "T1,new,\nT1,lost").size(),
+            1u);  // without a verdict, because nothing ran
 }
 
 TEST(HarnessInvariant, APartialRunLooksOnlyAtItsItemsAndAWholeRunAtAll) {

@@ -47,13 +47,13 @@ TEST(InputFilesIdentity, OnlyRegularFilesAreOpened) {
   const auto why = [&](const std::string& name) { return whyNoInput(scratch / name); };
   EXPECT_EQ(why("a.csv"), "");
   EXPECT_EQ(why("link"), "");
-  EXPECT_EQ(why("none"), "is not there");
+  EXPECT_EQ(why("none"), "does not exist");
   EXPECT_EQ(why(""), "is a directory");
   EXPECT_EQ(why("pipe"), "is a pipe, a device or a socket, and not a regular file");
   EXPECT_EQ(whyNoInput("/dev/zero"), why("pipe"));
-  EXPECT_TRUE(why("loop").starts_with("cannot be looked at")) << why("loop");
-  EXPECT_TRUE(why(std::string(5000, 'x')).starts_with("cannot be looked at"));
-  // a pipe that nobody writes to would keep a reader for ever
+  EXPECT_TRUE(why("loop").starts_with("cannot be examined")) << why("loop");
+  EXPECT_TRUE(why(std::string(5000, 'x')).starts_with("cannot be examined"));
+  // a pipe without a writer would block a reader forever
   EXPECT_NE(complaint([&] { Table::read(scratch / "pipe"); }).find("is a pipe"),
             std::string::npos);
 }
@@ -94,7 +94,8 @@ RC_GTEST_PROP(InputFilesIdentity, ProductsAreThoseOfWiderIntegers, ()) {
 
 TEST(InputFilesIdentity, NegativeControlAWrappedProductLooksSmall) {
   const std::vector<std::uint64_t> factors{std::uint64_t{1} << 33, std::uint64_t{1} << 31};
-  EXPECT_EQ(factors[0] * factors[1], 0u);  // what a trusting reader would allocate
+  EXPECT_EQ(factors[0] * factors[1],
+            0u);  // the memory that a reader without checks would allocate
   EXPECT_FALSE(productWithin(1000, factors));
   EXPECT_EQ(productWithin(100, std::vector<std::uint64_t>{5, 20}), 100u);
   EXPECT_FALSE(productWithin(100, std::vector<std::uint64_t>{5, 21}));
@@ -124,14 +125,13 @@ TEST(InputFilesIdentity, NamesAreUTF8WithoutControlCharactersAndOfALine) {
     return complaint([&] { requireName(name, place); });
   };
   EXPECT_EQ(said("Stra\u00dfe.001"), "accepted");
-  EXPECT_EQ(
-      said("Stra\xdf"
-           "e"),
-      "m.obj:3: g = Stra\\xdfe: is not UTF-8 from byte 5 on (0xdf); save it as UTF-8, or use "
-      "letters of ASCII");
-  EXPECT_EQ(
-      said("a\nb"),
-      "m.obj:3: g = a\\nb: holds a control character; use letters, digits, blanks and signs");
+  EXPECT_EQ(said("Stra\xdf"
+                 "e"),
+            "m.obj:3: g = Stra\\xdfe: is not UTF-8 at byte 5 (0xdf); save it as UTF-8, or use "
+            "ASCII letters");
+  EXPECT_EQ(said("a\nb"),
+            "m.obj:3: g = a\\nb: contains a control character; use letters, digits, spaces and "
+            "punctuation");
   EXPECT_EQ(said(std::string(1000, 'x')), "accepted");
   EXPECT_NE(said(std::string(1001, 'x')).find("is longer than 1000 bytes"), std::string::npos);
 }
@@ -155,7 +155,7 @@ TEST(InputFilesIdentity, AHundredThousandNamesAreNotAllListed) {
   std::vector<std::string> known;
   for (int i = 0; i < 100'000; ++i) known.push_back("facet-" + std::to_string(i));
   const std::string said = didYouMean("facet-4711x", known);
-  EXPECT_TRUE(said.starts_with("did you mean facet-4711? known are: facet-0, facet-1, "));
+  EXPECT_TRUE(said.starts_with("did you mean facet-4711? choose from: facet-0, facet-1, "));
   EXPECT_TRUE(said.ends_with(", facet-99, ... (100000 in all)"));
   EXPECT_EQ(didYouMean(std::string(10'000'000, 'x'), known).find("did you"), std::string::npos);
 }

@@ -36,7 +36,7 @@ TEST(InstallInvariant, AMovedTreeWorksAndLinks) {
                              (scratch.path / "out").string()),
             0);
   EXPECT_TRUE(fs::exists(scratch.path / "out"));
-  // the control: without its data the same program says so, and ends as for bad input
+  // the control: without its data the same program reports it, and ends as for bad input
   fs::rename(moved + "/share", scratch.path / "hidden");
   EXPECT_NE(
       run(scratch, moved + "/bin/malus sky --wavelength-nm 550 --mu0 0.5 --mu 0.5 --phi-deg "
@@ -113,7 +113,8 @@ TEST(InstallInvariant, LibrariesLeaveTheProgramAlone) {
   if (run(scratch, "nm " MALUS_BUILD "/lib/libmalus.so | grep -q __gcov_dump") == 0)
     GTEST_SKIP() << "what counts lines writes files of its own";
   EXPECT_FALSE(usesWhatIsTheProgramsOwn(scratch, "libmalus"));
-  // valijson would print in a destructor of its own if one of its parts' threw, and none of them does
+  // valijson would print in its destructor if a destructor of its parts threw, and none of them
+  // does
   EXPECT_FALSE(usesWhatIsTheProgramsOwn(scratch, "libmalus_scenes", "stderr|fprintf"));
   EXPECT_TRUE(
       usesWhatIsTheProgramsOwn(scratch, "libmalus_app"));  // control: this one is a program's

@@ -1,4 +1,5 @@
-// What the tests of the thesis chapters ask of an item: run it, sort its claims, spoil a print.
+// Common code for the tests of the thesis chapters: run an item, sort its claims, falsify a printed
+// number.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@
 /// The item after its function ran, on the committed printed values unless `data` says otherwise.
 inline malus::Item ran(const std::string& id,
                        const std::filesystem::path& data = "validation") {
-  const Scratch scratch;  // an item may write files of its own
+  const Scratch scratch;  // an item may write its own files
   malus::Item item(id, scratch.path, data);
   malus::functionOf(id, malus::registeredItems())(item);
   return item;

@@ -77,8 +77,8 @@ TEST(LayeredLightInvariant, AgreesWithTheCoherencyTensor) {
   EXPECT_GT(largest(0.2, 0.2, 0, {.remainder = 1e-3}), 1e-8);
 }
 
-// Haze under air, with absorption, over matt ground: adding and doubling shares streams and rotations, and nothing else. At
-// cosines from 0.2 on both promise 1e-8.
+// Haze under air, with absorption, over matt ground: adding and doubling shares streams and
+// rotations, and nothing else. At cosines from 0.2 on both have an accuracy of 1e-8.
 TEST(LayeredLightInvariant, AgreesWithAddingAndDoubling) {
   const std::vector<AirLayer> layers{{{rayleighScatterer(0.03), 0.1}},
                                      {{spheroids(), 0.5, 0.9}, {rayleighScatterer(0.03), 0.2}},
@@ -158,7 +158,8 @@ TEST(LayeredLightPublished, KokhanovskysAerosolAndCloud) {
   EXPECT_GT(worst("aerosol", {{spheres(1.4, 300, 0.92), 0.3262}}), 0.01);  // control
 }
 
-// What the sun brings comes back from a white ground, at every height, through a cloud that absorbs nothing and air: 1e-7.
+// All sunlight returns from a white ground, at every height, through a cloud that absorbs
+// nothing and air: 1e-7.
 TEST(LayeredLightInvariant, EnergyIsConserved) {
   const std::vector<AirLayer> layers{
       {{rayleighScatterer(0.03), 0.2}}, {{droplets(), 8}}, {{spheroids(), 0.4}}};
@@ -281,7 +282,8 @@ TEST(LayeredLightInvariant, AnyGroundAndATraceOfAir) {
   }
 }
 
-// Over each of them sun and viewer may be exchanged under a haze, which lets light go to and fro in all orders.
+// Over each of them sun and viewer may be exchanged under a haze, in which light is scattered
+// and reflected in all orders.
 TEST(LayeredLightInvariant, ExchangedOverAnyGround) {
   const std::vector<AirLayer> layers{{{rayleighScatterer(0.03), 0.1}, {spheroids(), 0.3}}};
   for (const AirGround& ground : {lawn(), sea(), copper()}) {
@@ -329,8 +331,9 @@ std::array<double, 16> elementsOf(const CDMuellerMatrix& m) {
 double leastEigenvalue(const CDMuellerMatrix& m) { return coherencyEigenvalues(m)[3]; }
 }  // namespace
 
-// All sixteen elements of the reflection of haze over grey ground are those of adding and doubling, whose matrices know
-// nothing of a sun; sun and view are streams without weight there. Light from S2 and S3 fills the azimuth's other halves.
+// All sixteen elements of the reflection of haze over grey ground are those of adding and
+// doubling, whose matrices do not depend on a sun; sun and view are streams without weight
+// there. Light from S2 and S3 fills the azimuth's other halves.
 TEST(LayeredLightInvariant, PolarisedSunsMakeTheMatrixOfDoubling) {
   const std::vector<AirLayer> layers{{{rayleighScatterer(0.03), 0.1}},
                                      {{spheroids(), 0.5, 0.9}}};
@@ -422,7 +425,8 @@ TEST(LayeredLightInvariant, AllSixteenElementsMayBeExchanged) {
   }
 }
 
-// Kokhanovsky et al. 2010, molecular case: six digits are promised, seven are printed, and the solution keeps 1e-8 of an
+// Kokhanovsky et al. 2010, molecular case: the authors claim six digits and print seven, and
+// the solution keeps 1e-8 of an
 // irradiance of pi.
 TEST(LayeredLightPublished, KokhanovskysMolecularLayer) {
   const Table table = Table::read("validation/printed/kokhanovsky2010.csv");
@@ -544,7 +548,8 @@ TEST(LayeredLightPublished, DeepAirIsThatOfTheTheory) {
 // From 1e-8 to 1e4: nothing is lost over a white ground, at any height, nor over a black one; light through deep air falls as
 // 1 / (tau + const); absorption leaves no light deep down.
 TEST(LayeredLightInvariant, EnergyFromThinToDeep) {
-  const LayeredLightAccuracy few{.streams = 32, .terms = 8};  // the balance needs no aureole
+  const LayeredLightAccuracy few{.streams = 32,
+                                 .terms = 8};  // the balance does not need the aureole
   for (const Scatterer& kind : {rayleighScatterer(0.03), droplets()}) {
     std::vector<double> resistance;
     for (const double depth : {1e-8, 1e-3, 1.0, 100.0, 2500.0, 5000.0, 1e4}) {

@@ -32,7 +32,7 @@ std::vector<double> initial(const LiveFigure& of) {
   return values;
 }
 
-/// The figure's answer with some controls moved.
+/// The figure's result with some controls moved.
 LiveAnswer answer(std::string_view name, const std::map<std::string_view, double>& moved = {}) {
   const LiveFigure& of = figure(name);
   std::vector<double> values = initial(of);
@@ -208,7 +208,8 @@ TEST(LiveFigures, SkyIsRayleighsAndHasItsNeutralPoints) {
 }
 
 TEST(LiveFigures, BiasIsTakenOffAsTheProductsDo) {
-  // unpolarised light shows b sqrt(pi/2) (chapter ErrorBars); 2000 draws know it to b sqrt((2 - pi/2)/2000)
+  // unpolarised light shows b sqrt(pi/2) (chapter ErrorBars); 2000 draws give it to b sqrt((2 -
+  // pi/2)/2000)
   const LiveAnswer none = answer("bias", {{"p0", 0}, {"b", 2}});
   EXPECT_NEAR(std::stod(text(none, "bias")), std::sqrt(std::numbers::pi / 2),
               4 * std::sqrt((2 - std::numbers::pi / 2) / 2000));

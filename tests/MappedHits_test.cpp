@@ -224,8 +224,8 @@ TEST(MappedHitsIdentity, AFactorMultipliesAllComponents) {
   }
 }
 
-// A plate in a room of its own temperature cannot be told from the room, whatever the factor: Kirchhoff's law. Cold
-// surroundings tell them apart.
+// A plate in a room at its temperature cannot be distinguished from the room, whatever the
+// factor: Kirchhoff's law. In cold surroundings it can.
 TEST(MappedHitsInvariant, AWarmPlateUnderFactorsKeepsKirchhoffsLaw) {
   constexpr double kelvin = 6000, single_precision = 1e-6;  // of the directions' weights
   const double black = planckRadiance(550, kelvin);

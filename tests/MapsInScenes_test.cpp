@@ -146,30 +146,29 @@ TEST(MapsInScenesIdentity, WhatIsWrongIsNamedWithItsRemedy) {
     expectIn(part, place.with(scene, pointer, value));
   };
   expect("/maps/land/image", "sea.pgm",
-         "maps.land.image = \"sea.pgm\": is not there; name a file");
+         "maps.land.image = \"sea.pgm\": does not exist; give the name of a file");
   expect("/maps/land/image", ".", "is a directory");
   expect("/maps/land/pixels", {64, 64},
          "maps.land.pixels = [64,64]: is not the size of land.pgm, which has 4 x 3 pixels; "
-         "name the right "
-         "image, or give the size that it has");
+         "give the right image, or its real size");
   expect("/maps/land/over_m", {4, 0, 0, 3}, "has no area; give [west, south, east, north]");
   expect("/maps/land/beyond", "mirror", "beyond");
-  expect("/maps/land/materials/x", "rock", "is no index of an image; give whole numbers");
+  expect("/maps/land/materials/x", "rock", "is not an index of an image; give whole numbers");
   expect("/maps/land/materials/90", "mash",
          "maps.land.materials.90 = \"mash\": is neither a material nor a map of the scene; did "
          "you mean");
   expect("/maps/land/mixture", {"water", "rock"},
-         "does not say in one way what the values of the image are; give one of materials, "
+         "does not specify the meaning of the image's values exactly once; give one of "
+         "materials, "
          "mixture");
-  expect("/maps/rock", scene["maps"]["land"],
-         "is the name of a material as well; give the map");
-  expect("/maps/land/materials/90", "land", "leads back to itself");
+  expect("/maps/rock", scene["maps"]["land"], "is also the name of a material; give the map");
+  expect("/maps/land/materials/90", "land", "refers back to itself");
   expectIn(
       "land.pgm: column 1, row 1 has the index 90, which names no material; name the material "
       "of each index",
       place.without(scene, "/maps/land/materials/90"));
   expect("/materials/rock", {{"model", "pane"}, {"n", 1.5}},
-         "selects \"rock\", which is clear; give clear materials to surfaces of their own");
+         "selects \"rock\", which is clear; give clear materials their own surfaces");
   expectIn("lacks \"image\"", place.without(scene, "/maps/land/image"));
   expectIn(
       "lies over the facet \"ground\", which has no texture coordinates; write the mesh with",
@@ -249,7 +248,7 @@ TEST(MapsInScenesInvariant, AParameterIsDrawnBetweenItsLevels) {
   const std::string& name = read.world.geometry.materialNames()[frame.truth[0].material];
   EXPECT_TRUE(name == "land[reflectance=0.1]" || name == "land[reflectance=0.2]") << name;
   const std::string parameter = "/maps/land/parameter";
-  expectIn("is no parameter of lambertian",
+  expectIn("is not a parameter of lambertian",
            place.with(scene, parameter + "/name", "roughness"));
   expectIn("is a single value; give two that differ",
            place.with(scene, parameter + "/range", {1, 1}));
@@ -325,7 +324,7 @@ TEST(MapsInScenesIdentity, HeightsAndSmoothMeshes) {
   mesh["geometry"] = {{{"obj", "leaning.obj"}, {"material", "rock"}}};
   const Scene flat_one = place.read(mesh);
   ASSERT_EQ(flat_one.notices.size(), 1u);
-  expectIn("say \"smooth\": true", flat_one.notices[0]);
+  expectIn("write \"smooth\": true", flat_one.notices[0]);
   EXPECT_NEAR(renderScene(flat_one).at(1, 1)[0], 0.4 * flat, 1e-4);
   mesh["geometry"][0]["smooth"] = true;
   const Scene smooth = place.read(mesh);

@@ -158,7 +158,7 @@ TEST(MaterialIdentity, BadTablesNameTheirLine) {
   EXPECT_TRUE(says(refusal("x.csv", "wavelength_nm,n\n400,1\n"), "k"));
   EXPECT_TRUE(says(refusal("x.csv", "wavelength_nm,n,k\n400,nan,2\n600,1,2\n"), "x.csv:2"));
   EXPECT_TRUE(says(refusal("x.csv", "wavelength_nm,n,k\n"), "give at least one sample"));
-  EXPECT_TRUE(says(refusal("x.txt", ""), "no known suffix"));
+  EXPECT_TRUE(says(refusal("x.txt", ""), "not a known suffix"));
   EXPECT_EQ(refusal("x.csv", "wavelength_nm,n,k\n400,1,2\n600,1,2\n"), "none");  // the control
 }
 
@@ -174,7 +174,7 @@ TEST(MaterialIdentity, BadRecordsNameTheirLine) {
   EXPECT_TRUE(
       says(refusal("x.yml", head + "      0.51 1 2\n      0.6 1 2\n"), "covers 510 to 600 nm"));
   EXPECT_TRUE(says(refusal("x.yml", "DATA: [1,\n"), "x.yml:2"));
-  EXPECT_TRUE(says(refusal("x.yml", "DATA: 3\n"), "missing or no list"));
+  EXPECT_TRUE(says(refusal("x.yml", "DATA: 3\n"), "missing or not a list"));
   EXPECT_TRUE(says(refusal("x.yml", "just words\n"), "x.yml"));
   EXPECT_TRUE(says(refusal("x.yml", "DATA:\n  - type: formula 4\n"),
                    "x.yml:2: type = formula 4: is not known"));
@@ -185,9 +185,9 @@ TEST(MaterialIdentity, BadRecordsNameTheirLine) {
       says(refusal("x.yml", "DATA:\n  - type: formula 5\n    wavelength_range: 0.6 0.3\n"),
            "is not a range"));
   EXPECT_TRUE(
-      says(complaint([] { readSpectrum("x.csv", "r", bands({500})); }), "is not there"));
+      says(complaint([] { readSpectrum("x.csv", "r", bands({500})); }), "does not exist"));
   EXPECT_TRUE(
-      says(complaint([] { readOpticalConstants("x.yml", bands({500})); }), "is not there"));
+      says(complaint([] { readOpticalConstants("x.yml", bands({500})); }), "does not exist"));
 }
 
 TEST(MaterialIdentity, LimitsAreTheCallers) {

@@ -18,7 +18,7 @@
 using namespace malus;
 
 namespace {
-// The numbers that an answer carries: one for an unpolarised value, four or sixteen otherwise.
+// The numbers of a result: one for an unpolarised value, four or sixteen otherwise.
 std::vector<double> carried(const MathValue& value) {
   if (const auto* s = std::get_if<CDStokesVector>(&value))
     return {s->data(), s->data() + (s->isPolarized() ? 4 : 1)};
@@ -71,7 +71,7 @@ Plain compute(const Plain& a, char sign, const Plain& b) {
   return r;
 }
 
-// The expected answer of "x op y" agrees with plain algebra to a unit of its 17th digit.
+// The expected result of "x op y" agrees with plain algebra to a unit of its 17th digit.
 bool agreesWithPlainAlgebra(const MathTest& test, char sign, const std::string& x,
                             const std::string& y) {
   const auto operand = [&](const std::string& name) {

@@ -22,7 +22,7 @@ constexpr bool memory_can_be_limited = true;
 
 enum class Ending { good, bad, out_of_memory, otherwise };
 
-/// How some work ends in a process of its own that may hold so many bytes.
+/// How some work ends in a separate process that may use so many bytes.
 inline Ending endingWithin(rlim_t bytes, const std::function<bool()>& work) {
   const pid_t child = ::fork();
   if (child == 0) {

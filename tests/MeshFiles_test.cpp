@@ -153,7 +153,7 @@ TEST(MeshFilesIdentity, NormalsOfCornersStayPerpendicular) {
   }
 }
 
-// The normals of the slope, as a PLY that stands as it is.
+// The normals of the slope, as a PLY that is used unchanged.
 TEST(MeshFilesIdentity, NormalsOfAPLY) {
   const Scratch scratch;
   put(scratch / "n.ply",
@@ -179,6 +179,6 @@ TEST(MeshFilesIdentity, BrokenFilesAreRefusedByName) {
   index.replace(index.rfind("3"), 1, "9");
   says(complaint("index.ply", index), "index.ply: cannot be read");
   says(complaint("none.ply", ""), "none.ply");
-  says(complaint("mesh.stl", "solid"), "is no ending of a mesh");
+  says(complaint("mesh.stl", "solid"), "is not the suffix of a mesh file");
   EXPECT_THROW(readMesh("missing.ply"), InputError);
 }

@@ -184,7 +184,7 @@ TEST(MicrofacetsIdentity, GrazingDirectionsOppositeEachOther) {
             1e-15);
   EXPECT_EQ(facetFactor(Shadowing::vGroove, g, facet, 0.2),
             std::numeric_limits<double>::infinity());
-  // beside each other: a facet would have to stand upright, and there is none
+  // beside each other: a facet would have to be vertical, and there is none
   const auto beside = BRDFGeometry::fromDegrees(90, 90, 90);
   for (const auto kind : {Shadowing::none, Shadowing::vGroove, Shadowing::smith})
     EXPECT_EQ(facetFactor(kind, beside, facetGeometry(beside), 0.2), 0);
@@ -277,7 +277,7 @@ TEST(MicrofacetsIdentity, GroovesHideFromSixtyDegreesPlusAThirdOn) {
 
 TEST(MicrofacetsIdentity, SmithSeesWhatTheProjectedFacetsLeave) {
   // Facets that face the viewer cover 1 + Lambda of what the mean surface covers: an integral
-  // over slopes that knows nothing of the error function.
+  // over slopes that does not use the error function.
   for (const double sigma : {0.05, 0.2, 0.6})
     for (const double theta : {0.1, 1.0, 1.5}) {
       const double t = std::tan(theta);

@@ -1,4 +1,4 @@
-// The promises of the models (nw/surface/ModelRegistry.nw), each computed.
+// The stated properties of the models (nw/surface/ModelRegistry.nw), each computed.
 #include "malus/surface/ModelRegistry.hpp"
 
 #include <fmt/format.h>
@@ -48,12 +48,14 @@ std::vector<BRDFGeometry> straightBack() {
     all.push_back(BRDFGeometry::fromDegrees(deg, deg, 0));
   return all;
 }
-// A polarisation of less than a thousandth is none; one of rounding would be 1e-12, and the least of the promised ones
-// is some per cent. Reciprocity of the models that have it holds to rounding, and what lacks it lacks it by per cents.
+// A polarisation of less than a thousandth counts as none; that of rounding would be 1e-12, and
+// the least of the polarising models has some per cent. Reciprocity of the models that have it
+// holds to rounding, and what lacks it lacks it by per cents.
 constexpr double polarized = 1e-3, irreciprocal = 1e-6, above_one = 1e-6;
 }  // namespace
 
-// At the example, and where there is one, at the witness of what is not promised.
+// At the example and, where there is one, at the counterexample of a property that the model
+// does not have.
 TEST(ModelRegistryInvariant, EveryPromiseIsKeptAtTheExample) {
   for (const ModelEntry& entry : modelEntries()) {
     const auto model = example(entry);
@@ -156,7 +158,8 @@ double interpolation(const ModelEntry& entry) {
 }
 }  // namespace
 
-// Whatever a user may ask for, corners included. What has no parameters but a file is as good as that.
+// All settings that a user may choose, corners included. What has no parameters but a file is
+// as good as that.
 TEST(ModelRegistryInvariant, EveryPromiseIsKeptWithAllParameters) {
   for (const ModelEntry& entry : modelEntries()) {
     if (std::any_of(entry.parameters.begin(), entry.parameters.end(),
@@ -188,7 +191,7 @@ TEST(ModelRegistryInvariant, EveryPromiseIsKeptWithAllParameters) {
         largest = std::max(largest, found.dhr);
       }
     }
-    // control: the same draws find what is not promised
+    // control: the same draws find models without the property
     if (!t.reciprocal) {
       EXPECT_GT(exchange, 0.01) << entry.name;
     }
@@ -202,7 +205,7 @@ TEST(ModelRegistryInvariant, EveryPromiseIsKeptWithAllParameters) {
 TEST(ModelRegistryIdentity, SettingsOfAPromiseAreSettingsOfTheModel) {
   EXPECT_TRUE(among({{"a", "1"}, {"b", "2"}}, "a=3 or a=1 b=2"));
   EXPECT_FALSE(among({{"a", "1"}, {"b", "3"}}, "a=3 or a=1 b=2"));
-  EXPECT_FALSE(among({{"a", "1"}}, "") || among({}, "a file that does"));
+  EXPECT_FALSE(among({{"a", "1"}}, "") || among({}, "a file that conserves energy"));
   for (const ModelEntry& entry : modelEntries())
     for (const std::string& with :
          {entry.traits.reciprocal_with, entry.traits.conserves_with}) {
@@ -214,7 +217,7 @@ TEST(ModelRegistryIdentity, SettingsOfAPromiseAreSettingsOfTheModel) {
     }
 }
 
-// Each promise is kept by some models and not made by others, so none of the comparisons above is idle.
+// Some models have each property and others do not, so each comparison above can fail.
 TEST(ModelRegistryInvariant, NegativeControlEachPromiseIsMadeAndNotMade) {
   std::array<std::set<bool>, 4> seen;
   for (const ModelEntry& entry : modelEntries()) {
@@ -258,7 +261,8 @@ TEST(ModelRegistryIdentity, ASmoothFaceHasTheLeastSlope) {
   EXPECT_EQ(slopeOf(0), 1e-6);
 }
 
-// What a constructor refuses, and a file that ends too early, is the user's. Anything else is ours, and must not be told as his.
+// What a constructor refuses, and a file that ends too early, is the user's. Anything else is
+// ours, and must not be reported as theirs.
 TEST(ModelRegistryIdentity, OnlyARefusalIsTheUsersMistake) {
   ModelSettings settings;
   settings.place = {"scene.json", 7, "/materials/paint", 0};

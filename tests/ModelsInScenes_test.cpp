@@ -80,7 +80,7 @@ TEST(ModelsInScenesIdentity, OneNameMayBeAWordAndANumber) {
   EXPECT_NO_THROW(readScene(scratch / "s.json"));
   for (const auto& [value, expected] :
        {std::pair<json, std::string>{"recipocal", "did you mean reciprocal?"},
-        {0.3, "is none of the words allowed here"},
+        {0.3, "is not one of the words allowed here"},
         {json::array(), "a word or a spectrum"}}) {
     copper["diffuse"] = value;
     put(scratch / "s.json", scene.dump(1));
@@ -110,7 +110,8 @@ TEST(ModelsInScenesInvariant, APaintFromItsRecipe) {
   put(scratch / "s.json", scene.dump(1));
   const Outcome outcome = malusIn(scratch.path, "render s.json --out a");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("larger than Mie's series"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("exceed the largest for which Mie's series"), std::string::npos)
+      << outcome.err;
 }
 
 TEST(ModelsInScenesInvariant, NegativeControlImpossibleMaterialsAreRefused) {
@@ -141,8 +142,8 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
   const Outcome missing = malusIn(scratch.path, dry);
   EXPECT_EQ(missing.code, 2);
   EXPECT_TRUE(missing.err.starts_with("there/s.json:")) << missing.err;
-  EXPECT_NE(missing.err.find("materials.copper-010.file = \"nef.csv\": is not there; "
-                             "name a file; relative paths begin in there"),
+  EXPECT_NE(missing.err.find("materials.copper-010.file = \"nef.csv\": does not exist; "
+                             "give the name of a file; relative paths begin in there"),
             std::string::npos)
       << missing.err;
   put(scratch / "there/nef.csv", table);
@@ -152,7 +153,7 @@ TEST(ModelsInScenesIdentity, AFileCountsFromTheScene) {
   EXPECT_NE(malusIn(scratch.path, dry).err.find("(the name of a file)"), std::string::npos);
 }
 
-// A measured surface stands in a scene beside computed ones.
+// A scene has a measured surface beside computed ones.
 TEST(ModelsInScenesInvariant, AMeasuredSurfaceLooksLikeItsModel) {
   const Scratch scratch;
   json scene = mixedScene();

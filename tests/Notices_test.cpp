@@ -1,4 +1,5 @@
-// What a scene is told before it is rendered: defaults, notices and refusals of sensors and samplings
+// Messages about a scene before it is rendered: defaults, notices and refusals of sensors and
+// samplings
 // (nw/files/SceneReader.nw, nw/app/CommandRender.nw).
 #include <gtest/gtest.h>
 
@@ -174,7 +175,7 @@ TEST(NoticesIdentity, ABiasedGridIsReportedOnce) {
       "grid-rotated with 90 directions from hit 1 shows 1.2 % too much of \"plate\" under an "
       "even sky",
       notices(card, rotated({91}))[0]);
-  expectIn("name \"sampling\": \"importance\" or more rays", notices(card, rotated({91}))[0]);
+  expectIn("choose \"sampling\": \"importance\" or more rays", notices(card, rotated({91}))[0]);
   expectIn("1 directions from hit 2 shows 41.4 % too much",
            notices(card, rotated({91, 2})).at(0));
   expectIn("all reflections together may be off by 43.2 %",
@@ -203,8 +204,8 @@ TEST(NoticesIdentity, SettingsOfAGridBelongToAGrid) {
   expectIn("radiometry.deviation = 1: has no effect",
            said({{"sampling", "adaptive"}, {"deviation", 1}}));
   expectIn(
-      "radiometry.max_zenith_deg = 80: has no effect with this sampling; leave it out, or name "
-      "another sampling",
+      "radiometry.max_zenith_deg = 80: has no effect with this sampling; leave it out, or "
+      "choose another sampling",
       said({{"max_zenith_deg", 80}}));
   expectIn(
       "radiometry.rays[1] = 4: leaves 3 directions beside the one to the sun, too few for 6 "
@@ -220,7 +221,7 @@ TEST(NoticesIdentity, ALobeThatCannotBeSeenIsRefused) {
   for (const char* sampling : {"random", "grid", "grid-rotated", "adaptive"}) {
     const std::string said = complaint(plate(glass(1e-3), {{"sampling", sampling}}));
     expectIn("radiometry.sampling = \"" + std::string(sampling) +
-                 "\": cannot see the narrow lobe of \"plate\" with 32 directions; name "
+                 "\": cannot see the narrow lobe of \"plate\" with 32 directions; choose "
                  "\"sampling\": \"importance\"",
              said);
     EXPECT_EQ(complaint(plate(glass(0.2), {{"sampling", sampling}})), "");
@@ -237,7 +238,7 @@ TEST(NoticesIdentity, TooManyReflectionsAreToldHowManyThereMayBe) {
   EXPECT_EQ(complaint(plate(card, {{"rays", std::vector<int>(16, 2)}})), "");
 }
 
-// Normals like the facets' own change nothing and are no news.
+// Normals equal to the facets' normals change nothing and give no notice.
 TEST(NoticesIdentity, NormalsThatAreNotUsedAreReported) {
   const Scratch scratch;
   const auto mesh = [&](const std::string& normals) {

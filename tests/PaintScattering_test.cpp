@@ -165,7 +165,7 @@ TEST(PaintScatteringIdentity, NothingJumpsAcrossTheNormal) {
             1e-3 * at(0).getScalar());
 }
 
-// Large grains, whose forward peak wants many streams: still no light lost or made.
+// Large grains, whose forward peak needs many streams: still no light lost or made.
 TEST(PaintScatteringInvariant, LargeGrainsKeepEnergyToo) {
   const BRDFLayeredPaint large = paint(1.5, {coat(1.7, 0, 10, 0.15, 500, 1.2)}, 1);
   const PaintSurface face(flat(1.5), {}, 0);

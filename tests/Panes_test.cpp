@@ -28,7 +28,7 @@ double sine2(double theta) { return std::sin(theta) * std::sin(theta); }
 PaneTerms paneAt(double theta, double n, double depth = 0) {
   return paneTerms(std::cos(theta), sine2(theta), n, depth);
 }
-/// Stokes 1862: what m plates of faces that reflect r let through.
+/// Stokes 1862: the transmittance of m plates whose faces reflect r.
 double pile(double r, int m) { return (1 - r) / (1 + (2 * m - 1) * r); }
 const double angles_deg[] = {0, 20, 40, 56.3, 70, 85, 89};
 }  // namespace

@@ -20,7 +20,7 @@
 using namespace malus;
 
 namespace {
-// how often each number came; no lock: every number has a place of its own
+// how often each number came; no lock: every number has its own place
 std::vector<int> timesEach(std::size_t count, int threads) {
   std::vector<int> times(count, 0);
   parallelFor(
@@ -35,7 +35,7 @@ class Meeting {
   bool wait() {
     std::unique_lock lock(mutex_);
     if (--missing_ == 0) all_.notify_all();
-    // the minute is no measurement: without it a failure would be a hang
+    // the minute is not a measurement: without it a failure would be a hang
     return all_.wait_for(lock, std::chrono::minutes(1), [&] { return missing_ <= 0; });
   }
 
@@ -204,7 +204,7 @@ TEST(ParallelInvariant, WhoLooksMayWork) {
   EXPECT_EQ(looks, 2);
   EXPECT_GE(inner_looks, 1);
   looks = 0;
-  parallelFor(20, body);  // nobody watches any more
+  parallelFor(20, body);  // there is no watcher any more
   EXPECT_EQ(looks, 0);
 }
 

@@ -81,8 +81,8 @@ TEST(ParametersIdentity, EachRefusalSaysWhereWhatAndWhatWouldBeRight) {
   const Argument half = written("0.5");
   EXPECT_EQ(complaint({{"share", half}}), "accepted");  // control
   EXPECT_EQ(complaint({{"share", half}, {"widht_deg", written("3")}}),
-            "command line: --x = 3: is no parameter of a thing; did you mean width_deg? known "
-            "are: share, width_deg, depth, place, kind");
+            "command line: --x = 3: is not a parameter of a thing; did you mean width_deg? "
+            "choose from: share, width_deg, depth, place, kind");
   EXPECT_EQ(complaint({{"share", half}, {"colour", written("red")}}),
             "command line: --x = red: is now called kind; write kind");
   EXPECT_EQ(
@@ -90,7 +90,8 @@ TEST(ParametersIdentity, EachRefusalSaysWhereWhatAndWhatWouldBeRight) {
       "command line: --x = 0 deg: must be above 0, up to 90; give a width (above 0, up to 90)");
   EXPECT_EQ(
       complaint({{"share", half}, {"place", written("beside")}}),
-      "command line: --x = beside: is none of the words allowed here; known are: below, above");
+      "command line: --x = beside: is not one of the words allowed here; choose from: below, "
+      "above");
   EXPECT_EQ(complaint({{"share", written("nan")}}).substr(0, 23), "command line: --x = nan");
 }
 

@@ -157,7 +157,7 @@ TEST(PictureFilesInvariant, WhatCannotBeWrittenLeavesNothingBehind) {
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(), (scratch / "file/x.exr").string() +
-                                ": cannot be written: Not a directory; name a file in a "
-                                "directory with room that you may write to");
+                                ": cannot be written: Not a directory; choose a file in a "
+                                "writable directory with free space");
   }
 }

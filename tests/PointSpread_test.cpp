@@ -263,7 +263,7 @@ TEST(ExposureIdentity, ContrastsMultiply) {
   }
 }
 
-// Parts are the very bits of the whole: a displaced ray needs no neighbour.
+// Parts are the very bits of the whole: a displaced ray does not use neighbours.
 TEST(PointSpreadInvariant, TilesAreTheBitsOfTheWhole) {
   const Scene scene = edgeScene(
       0.2, [](SensorGeometry& g) { g.point_spread = PointSpread::airy(0.4); }, 16);

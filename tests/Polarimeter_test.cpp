@@ -129,7 +129,7 @@ TEST(PolarimeterIdentity, ACalibrationIsAMatrixForEachPixel) {
   const double last = 0.1 * double(width * height - 1);
   const std::vector<double> read = readAll(p, even({2, 0.5, -0.3, 0.7}));
   EXPECT_NEAR(read.back(), 1 + 0.25 * std::cos(2 * last) - 0.15 * std::sin(2 * last), rounding);
-  // rounding times the condition number, which p knows
+  // rounding times the condition number, which p contains
   EXPECT_LT(farthest(recoverAll(p, read), even({2, 0.5, -0.3, 0})), 1e-14 * p.condition());
   EXPECT_GT(p.condition(), 10);  // or the limit above would be that of any polarimeter
 }
@@ -336,7 +336,7 @@ TEST(PolarimeterInvariant, NoiseDependsOnSeedAndFrameAlone) {
 TEST(PolarimeterIdentity, NoiseThatCannotBeIsRefused) {
   std::vector<double> readings{1.0, -1e-9};
   addNoise(readings, {});
-  EXPECT_EQ(readings[0], 1.0);  // none asked for, none added
+  EXPECT_EQ(readings[0], 1.0);  // none requested, none added
   EXPECT_THROW(addNoise(readings, {0, 1, never, 1}), MathError);
   EXPECT_THROW(addNoise(readings, {-1, 0, never, 1}), MathError);
   addNoise(readings, {100, 0, never, 1});

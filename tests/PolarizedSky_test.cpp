@@ -52,7 +52,7 @@ CDStokesVector seen(const World& world, const CDVector& to_viewer, const CDVecto
   return {out[0], out[1], out[2], out[3]};
 }
 
-// The same by a midpoint rule of our own and frames built from their definitions.
+// The same by a separate midpoint rule and frames built from their definitions.
 CDStokesVector integrated(const Sky& sky, const CDVector& normal, const CDVector& to_viewer,
                           const CDVector& horizontal) {
   const auto brdf = copper();
@@ -116,7 +116,8 @@ TEST(PolarizedSkyInvariant, ARoughPlateReadsTheSky) {
   }
 }
 
-// Sun, sky, plate and camera turned about the vertical: nobody can tell. The directions of the sampling
+// Sun, sky, plate and camera turned about the vertical: the result does not change. The
+// directions of the sampling
 // stay with the east, and so differ by their step: 1e-3 as above.
 TEST(PolarizedSkyInvariant, ATurnedWorldLooksTheSame) {
   CDStokesVector first;

@@ -51,7 +51,8 @@ Plan planIn(const Workplace& place, const std::string& part = "") {
 }
 }  // namespace
 
-// The preview of a frame is there before its first tile, and each half of the tiles brings it nearer to the end.
+// The preview of a frame is there before its first tile, and each half of the tiles brings it
+// closer to the final picture.
 TEST(PreviewInvariant, EveryTileImprovesIt) {
   const Workplace place(copper(64, 48));
   const Plan plan = planIn(place);
@@ -90,7 +91,7 @@ TEST(PreviewInvariant, EveryTileImprovesIt) {
   EXPECT_EQ(differenceOf(pictureIn(file), end), 0);
 }
 
-// The two halves are the quick looks of S0 and DoLP, which stand left of their bars.
+// The two halves are the quick looks of S0 and DoLP, which are left of their bars.
 TEST(PreviewIdentity, ItsColoursAreThoseOfTheQuickLooks) {
   const Workplace place(copper(40, 24));
   ASSERT_EQ(place.malus("render s.json --out a --progressive --write pictures").code, 0);

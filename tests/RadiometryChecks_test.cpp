@@ -1,4 +1,5 @@
-// The radiometry against answers that do not come from it: furnaces, form factors, cavities, an image plane, and the
+// The radiometry against independent results: furnaces, form factors, cavities, an image plane,
+// and the
 // program malus brdf (explained in nw/render/ImportanceSampling.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -37,8 +38,9 @@ RadiometryOptions gridOf(int rays) {
   return options;
 }
 
-// Form factor from a surface element to a parallel rectangle a by b at the height h whose corner stands above
-// it (Siegel and Howell, Thermal Radiation Heat Transfer, configuration factors of elements to rectangles).
+// Form factor from a surface element to a parallel rectangle a by b at the height h whose
+// corner is above it (Siegel and Howell, Thermal Radiation Heat Transfer, configuration factors
+// of elements to rectangles).
 double cornerFactor(double a, double b, double h) {
   const double A = a / h, B = b / h, p = std::sqrt(1 + A * A), q = std::sqrt(1 + B * B);
   return (A / p * std::atan(B / p) + B / q * std::atan(A / q)) / (2 * pi);
@@ -73,7 +75,8 @@ TEST(RadiometryChecksInvariant, WhiteFurnaceOnTheGrid) {
   EXPECT_NEAR(s0(worldOf({floorOf(matt(1))}, uniformSky(1)), gridOf(4001), ray), 1, 5e-4);
 }
 
-// The thesis's diffuse term gives back what one reflection by the facets loses behind others: a metal that does not
+// The thesis's diffuse term returns the light that one reflection by the facets loses behind
+// others: a metal that does not
 // absorb is white, from every side.
 TEST(RadiometryChecksInvariant, LosslessMetalIsWhite) {
   for (const double zenith : {0.2, 0.8, 1.3}) {
@@ -90,7 +93,7 @@ TEST(RadiometryChecksInvariant, LosslessMetalIsWhite) {
 }
 
 // Helmholtz: what a viewer sees of a plate under a sky of radiance one is the fraction of the light that the plate
-// would reflect if it came from there. getDHR is a quadrature of its own.
+// would reflect if it came from there. getDHR is a separate quadrature.
 TEST(RadiometryChecksIdentity, PlateUnderAUniformSkyShowsItsReflectance) {
   const Model model = copper(0.2, DiffuseTerm::reciprocal);
   for (const double zenith : {0.2, 0.8, 1.2}) {
@@ -158,7 +161,8 @@ TEST(RadiometryChecksPublished, CeilingHidesItsFormFactor) {
 }
 
 // Inside of a globe all form factors are areas. With the share a of its area open and walls of albedo rho, the light
-// that has been reflected j + 1 times is rho a (rho (1 - a))^j of the sky's. 7200 flat facets stand for the globe:
+// that has been reflected j + 1 times is rho a (rho (1 - a))^j of the sky's. 7200 flat facets
+// approximate the globe:
 // their normals are off by up to 1/40, the albedo seen by 3e-4 of itself; tolerance 2e-3 with 5 standard errors.
 TEST(RadiometryChecksPublished, GlobeWithAnOpeningReflectionByReflection) {
   const double opening = 70 * degree, open_share = (1 - std::cos(opening)) / 2, rho = 0.8;

@@ -183,7 +183,7 @@ TEST(RadiometryInvariant, CircularLightWantsTwoReflections) {
 }
 
 // Two mirrors: with two rays at the first surface the one that is not the sun's leaves at 45 degrees towards +x (a grid of one
-// cell). There stands a wall that reflects the sun. The product of matrices is written out, with rotations by angles.
+// cell). A wall reflects the sun. The product of matrices is written out, with rotations by angles.
 TEST(RadiometryIdentity, PeriscopeIsAProductOfMatrices) {
   const CDVector wall_normal = normalized({-1, 0.35, -0.2}), d = normalized({1, 0, 1});
   const CDVector hit = d * 3, side = normalized(cross({0, 0, 1}, wall_normal));
@@ -250,8 +250,9 @@ TEST(RadiometryInvariant, CompanyChangesNoBit) {
   }
 }
 
-// Surfaces at the end of a path ask together, unless something glows. At 300 K what glows sends no light to speak of at
-// 550 nm (1e-30 of the sky's), but all surfaces go the other way then. 1e-12: the order of sums.
+// Surfaces at the end of a path are evaluated together, unless something emits. At 300 K a
+// surface emits almost nothing at 550 nm (1e-30 of the sky's), but all surfaces go the other
+// way then. 1e-12: the order of sums.
 TEST(RadiometryInvariant, SurfacesThatAskTogetherAnswerAsEachByItself) {
   const Transform wall =
       Transform::translate({1, 0.3, 0.6}).after(Transform::rotate({0.3, 1, 0}, -1.1));
@@ -303,8 +304,9 @@ CDStokesVector byTheOldTracer(const World& world, bool toward,
 const double secant = 1 / std::cos(15 * degree);  // of three zeniths, as below
 }  // namespace
 
-// A wall that sends back the sky's very radiance (its reflectance makes up for the grid's secant) stands for all that hides the
-// sky, so that ground beside it is as bright as without it. 1e-6: weights are single precision.
+// A wall that reflects exactly the sky's radiance (its reflectance compensates the grid's
+// secant) represents everything that hides the sky, so that ground beside it is as bright as
+// without it. 1e-6: weights are single precision.
 TEST(RadiometryPublished, TwoAndAHalfBouncesKeepAnEvenHemisphere) {
   const World even = corner(1 / secant);
   Radiometry::Truth truth;
@@ -356,7 +358,8 @@ TEST(RadiometryInvariant, TwoAndAHalfBouncesNeedTheirRays) {
       Radiometry(world, tracer, {.sampling = Sampling::twoAndAHalf, .rays = {3, 1}}));
 }
 
-// Ground and a wall, both endless, in a corner: each sees the other with half of its hemisphere, so that under a uniform
+// Ground and a wall, both endless, in a corner: each covers half of the other's hemisphere, so
+// that under a uniform
 // sky L_n = rho (L + L_{n-1}) / 2 after n reflections, times 1/cos(15 deg) for the three zeniths of the grid (see the chapter).
 // 1e-3: sixteen azimuths, however turned, are halved by a plane, but for the little that the wall's finite size leaves open.
 TEST(RadiometryPublished, LambertianCornerIsAGeometricSeries) {
@@ -443,7 +446,8 @@ TEST(RadiometryIdentity, ShadowAndTruth) {
   EXPECT_NEAR(sky.getScalar(), 0.1, 1e-15);
 }
 
-// The fault of the thesis: some of many pixels see the disk of a sun that stands in the sky as well, a thousand times too bright.
+// The fault of the thesis: some of many pixels sample the disk of a sun that is in the sky as
+// well, a thousand times too bright.
 TEST(RadiometryIdentity, SunInTheSkyAsWellIsAFaultThatShows) {
   const auto grey = std::make_shared<BRDFDiffuse>(CDSpectralVector<double>(one_band, 0.5), 0.0);
   World world = worldOf({{{}, grey}}, 0.05);

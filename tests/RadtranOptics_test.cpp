@@ -36,7 +36,8 @@ struct Made {
         }
       }
   }
-  // P1 to P6 of molecules with a depolarisation of their own, and an asymmetry that does not matter for its mean
+  // P1 to P6 of molecules with a separate depolarisation, and an asymmetry that does not matter
+  // for its mean
   static double function(std::size_t pair, std::size_t element, double angle) {
     const double c = std::cos(angle * std::acos(-1.0) / 180),
                  D = 1 - 0.1 * static_cast<double>(pair);
@@ -201,18 +202,20 @@ TEST(RadtranOpticsRefusals, BrokenFiles) {
             "in micrometres");
   EXPECT_EQ(changed([](Made& m) { m.radius_um[0] = NAN; }).substr(0, 30),
             "dust.cdf: reff = nan: is numbe");
-  EXPECT_EQ(changed([](Made& m) { m.ssa[2] = 1.2; }),
-            "dust.cdf: ext, ssa = 50, 1.2: are no extinction and albedo (number 3); give an "
-            "extinction above 0 and an "
-            "albedo of 0 to 1");
+  EXPECT_EQ(
+      changed([](Made& m) { m.ssa[2] = 1.2; }),
+      "dust.cdf: ext, ssa = 50, 1.2: are not an extinction and an albedo (number 3); give an "
+      "extinction above 0 and an "
+      "albedo of 0 to 1");
   EXPECT_EQ(changed([](Made& m) { m.ntheta[0] = 2000; }),
-            "dust.cdf: ntheta = 2000: is no number of angles (wavelength 0.4 um, element 1); "
+            "dust.cdf: ntheta = 2000: is not a number of angles (wavelength 0.4 um, element "
+            "1); "
             "give the functions from 0 to "
             "180 degrees, each angle once");
   EXPECT_EQ(changed([](Made& m) { m.ntheta[0] = -1; }).substr(0, 30),
             "dust.cdf: ntheta = -1: is no n");
   EXPECT_EQ(changed([](Made& m) { m.theta[3] = 190; }).substr(0, 38),
-            "dust.cdf: theta = 190: is no angle (wa");
+            "dust.cdf: theta = 190: is not an angle (wa");
   EXPECT_EQ(changed([](Made& m) { m.theta[3] = m.theta[4]; }).substr(0, 39),
             "dust.cdf: theta = 178: comes twice (wav");
   EXPECT_EQ(changed([](Made& m) { m.theta[0] = 179.9f; }).substr(0, 38),
@@ -247,7 +250,8 @@ TEST(RadtranOpticsIdentity, EachQuestionHasItsParticles) {
   EXPECT_EQ(answer.number(0, "Q"), answer.number(3, "Q"));
 }
 
-// A classic file that was cut short, or whose header promises more than there is; a radius beside a table of ours.
+// A classic file that was cut short, or whose header states more than there is; a radius beside
+// a table of ours.
 TEST(RadtranOpticsRefusals, FilesThatLie) {
   const std::string whole = contents(waso);
   const Scratch scratch;

@@ -43,10 +43,11 @@ struct Post {
   std::vector<std::deque<Ranks::Letter>> boxes;
   std::vector<std::string> spoken;  // by rank 0, to all
   std::atomic<bool> killed = false;
-  std::atomic<std::size_t> tiles = 0;  // that other ranks have told of
+  std::atomic<std::size_t> tiles = 0;  // that other ranks have reported
 };
 
-/// What goes wrong: after so many letters the rank dies; each letter takes so long; a letter is falsified.
+/// Faults: after so many messages the rank dies; each message takes so long; a message is
+/// falsified.
 struct Fate {
   std::size_t dies_after = std::size_t(-1);
   std::chrono::microseconds slow{0};
@@ -91,7 +92,7 @@ class ThreadRanks : public Ranks {
       text = post_.spoken[heard_++];
       return true;
     });
-    // so that each rank gets a tile, rank 0 begins its own when all have asked
+    // so that each rank gets a tile, rank 0 begins its own after all requests
     if (rank_ == 0 && text.starts_with("frame"))
       waitUntil([&] { return post_.boxes[0].size() + 1 >= size(); });
   }
@@ -146,7 +147,7 @@ RenderFlags flagsFor(const std::string& scene, const fs::path& out) {
   return flags;
 }
 
-/// A picture that is no whole number of tiles, and a film of two frames.
+/// A picture whose size is not a whole number of tiles, and a film of two frames.
 std::string smallScene(const Scratch& scratch) {
   nlohmann::json scene =
       nlohmann::json::parse(contents(scenes + "flight-nadir.json"), nullptr, true, true);
@@ -193,7 +194,8 @@ TEST(RanksInvariant, AnyNumberOfRanksMakesTheSameBits) {
   EXPECT_GE(differing(scratch / "1", scratch / "other").size(), 8u);
 }
 
-// A picture of several batches has a third cube, which other ranks write into as well; a rank dies, and the others go on.
+// A picture of several batches has a third cube, which other ranks write into as well; a rank
+// dies, and the others continue.
 TEST(RanksInvariant, TheErrorsOfAPictureAreTheSameBits) {
   const Scratch scratch;
   const std::string scene = smallScene(scratch);
@@ -227,7 +229,8 @@ TEST(RanksInvariant, SlowRanksAndManyThreadsMakeTheSameBits) {
   EXPECT_EQ(differing(scratch / "alone", scratch / "slow"), std::vector<std::string>{});
 }
 
-// mpirun kills all when one rank dies: what was told before is in the journals, and any number of ranks goes on from there.
+// mpirun kills all when one rank dies: the finished tiles are in the journals, and any number
+// of ranks continues from there.
 TEST(RanksInvariant, ARankThatDiesCostsItsTilesInWork) {
   const Scratch scratch;
   const std::string scene = smallScene(scratch);
@@ -245,7 +248,8 @@ TEST(RanksInvariant, ARankThatDiesCostsItsTilesInWork) {
   }
 }
 
-// A rank that says of each tile that it has written something else: the cube must not get its name, and resuming mends it.
+// A rank that reports a false checksum of each tile: the cube must not get its name, and
+// resuming repairs it.
 TEST(RanksInvariant, ATileThatDoesNotReadAsItWasToldIsFound) {
   const Scratch scratch;
   RenderFlags flags = flagsFor(smallScene(scratch), scratch / "whole");
@@ -254,8 +258,7 @@ TEST(RanksInvariant, ATileThatDoesNotReadAsItWasToldIsFound) {
   flags.out = (scratch / "out").string();
   const Ended ended = renderBy(2, flags, {{1, {.lies = true}}});
   EXPECT_EQ(ended.codes, std::vector<int>(2, 2));
-  EXPECT_NE(ended.complaint.find("does not read as another process has written it"),
-            std::string::npos)
+  EXPECT_NE(ended.complaint.find("differs from what another process wrote"), std::string::npos)
       << ended.complaint;
   EXPECT_FALSE(fs::exists(scratch / "out/film.0000.img"));
   flags.resume = true;
@@ -278,7 +281,7 @@ TEST(RanksInvariant, MistakesEndAllRanks) {
   EXPECT_EQ(renderBy(3, flags).codes, std::vector<int>(3, 2));
 }
 
-// One failure in serving: the office keeps it, hears all ranks to their end, and only then throws.
+// One failure in serving: rank 0 keeps it, serves all ranks to their end, and only then throws.
 TEST(RanksIdentity, TheOfficeHearsAllBeforeItComplains) {
   stop_wanted = false;
   Post post(3);
@@ -337,11 +340,11 @@ TEST(RanksIdentity, TilesAreHandedOutOnce) {
   office.serve([](const WrittenTile&) {});
 }
 
-// Copies in memory take the place of files, for all that reads input.
+// Copies in memory replace the files for all readers of input.
 TEST(RanksIdentity, AFileInMemoryIsReadByItsName) {
   const Scratch scratch;
   const fs::path name = scratch / "there.txt";
-  EXPECT_EQ(whyNoInput(name), "is not there");
+  EXPECT_EQ(whyNoInput(name), "does not exist");
   const std::string text(3 << 20, 'x');
   placeInput(name, text);
   EXPECT_EQ(whyNoInput(name), "");

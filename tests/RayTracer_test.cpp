@@ -337,7 +337,8 @@ TEST(RayTracerInvariant, OutlivesTheGeometryThatItWasGiven) {
 }
 
 namespace {
-/// A bush of leaves that stand every way, about a metre high: no edge is shared, so that a ray near an edge meets what it meets.
+/// A bush of leaves in all orientations, about a metre high: no edge is shared, so that a ray
+/// near an edge has a single valid intersection.
 Mesh bush(int leaves) {
   Mesh mesh;
   mesh.name = "bush";

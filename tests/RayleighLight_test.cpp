@@ -1,4 +1,4 @@
-// The exact sky of a Rayleigh atmosphere (nw/air/RayleighLight.nw).
+// The exact sky of a Rayleigh atmosphere (nw/air/RayleighLight.nw, nw/air/RayleighOperators.nw).
 #include "malus/air/RayleighLight.hpp"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,8 @@ TEST(RayleighLightPublished, IprtCaseA1) {
   }
 }
 
-// Kokhanovsky et al. 2010, molecular case, down to 89 degrees: six digits are promised, seven are printed.
+// Kokhanovsky et al. 2010, molecular case, down to 89 degrees: the authors claim six digits and
+// print seven.
 TEST(RayleighLightPublished, KokhanovskysMolecularLayer) {
   const Table table = Table::read("validation/printed/kokhanovsky2010.csv");
   const RayleighLight light(RayleighAtmosphere(0.3262), 0.5, 0, 2 * pi);  // pi / mu0
@@ -339,7 +340,7 @@ TEST(RayleighLightInvariant, AGrazingSun) {
       }
     }
   }
-  // control: another sun than the one asked for does not keep the balance
+  // control: a sun other than the given one does not keep the balance
   const RayleighAtmosphere air(0.05);
   EXPECT_GT(std::abs(RayleighLight(air, 1.001e-4, 1, pi).diffuseUp() / (pi * 1e-4) - 1), 2e-6);
 }

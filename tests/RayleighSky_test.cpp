@@ -100,7 +100,7 @@ TEST(RayleighSkyInvariant, ManyDirectionsAtOnceAreTheSameLight) {
   }
 }
 
-// A sky that has no radiances() of its own.
+// A sky without its own radiances().
 class OneByOne final : public Sky {
  public:
   explicit OneByOne(const Sky& sky) : Sky(sky.grid()), sky_(sky) {}

@@ -144,11 +144,11 @@ TEST(RefusalsIdentity, HostileScenesAreRefusedAtTheirPlace) {
       {"/radiometry/rays", json::array({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}),
        "has 17 entries, and 16 are allowed"},
       {"/materials/paint/sigmaa", 1,
-       "materials.paint.sigmaa: is not a known key here; known are: reflectance, "
+       "materials.paint.sigmaa: is not a known key here; choose from: reflectance, "
        "polarization_kept, model, "
        "temperature_K, thermal\n"},
       {"/materials/paint/reflectancee", 1,
-       "did you mean reflectance? known are: reflectance, polarization_kept, model, "
+       "did you mean reflectance? choose from: reflectance, polarization_kept, model, "
        "temperature_K, thermal\n"},
       {"/materials/paint",
        json::parse(
@@ -194,7 +194,7 @@ TEST(RefusalsIdentity, AnOpenBodyOfGlassIsRefusedAtItsMaterial) {
   scene["materials"]["glass"]["temperature_K"] = 300;
   scene["materials"]["glass"]["model"] = "pane";
   expectRefusal(Workplace(scene), "render s.json --out a",
-                "belongs to a material that lets light through");
+                "belongs to a transmitting material");
   scene["materials"]["glass"].erase("temperature_K");
   scene["radiometry"] = {{"sampling", "two-and-a-half"}, {"rays", {9, 1}}};
   expectRefusal(Workplace(scene), "render s.json --out a",
@@ -218,7 +218,7 @@ TEST(RefusalsIdentity, MeshesWithWrongIndicesAndNamesAreRefused) {
   for (const std::string corner : {"4294967299", "1,5", "3x"})
     expectRefusal(Workplace(soundScene(), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + corner + "\n"),
                   "render s.json --out a",
-                  "t.obj:4: f = " + corner + ": is no corner of a face");
+                  "t.obj:4: f = " + corner + ": is not a corner of a face");
   expectRefusal(Workplace(soundScene(), std::string("g Stra\xdf") + "e\n" + triangle + "\n"),
                 "render s.json --out a", "t.obj:1: g = Stra\\xdfe: is not UTF-8");
   expectRefusal(Workplace(soundScene(), "v 2e18 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
@@ -269,7 +269,7 @@ TEST(RefusalsIdentity, NumbersOfTheCommandLineAreDecimal) {
     expectRefusal(place, "render s.json --out a " + flag,
                   "is not decimal: write a number such as 16");
   expectRefusal(place, "render s.json --out a --seed 0x1",
-                "--seed = 0x1: is not made of whole numbers");
+                "--seed = 0x1: does not consist of whole numbers");
 }
 
 TEST(RefusalsIdentity, ATensorWhoseSizesOverflowIsRefused) {
@@ -358,7 +358,7 @@ std::string fateOf(const json& scene, const std::filesystem::path& directory) {
 }
 }  // namespace
 
-// Every number of a scene has an interval: whatever stands in its place is refused there, or gives a picture.
+// Every number of a scene has an interval: any other value is refused there, or gives a picture.
 TEST(RefusalsInvariant, NoNumberOfASceneReachesTheTracerFromOutsideItsInterval) {
   const Workplace place(soundScene());
   std::vector<std::string> numbers;

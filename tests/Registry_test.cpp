@@ -26,7 +26,7 @@ TEST(RegistryIdentity, EntriesAreSortedAndFoundByName) {
   ASSERT_EQ(Registry<Thing>::entries().size(), 2u);
   EXPECT_EQ(Registry<Thing>::entries()[0].name, "apple");
   EXPECT_EQ(Registry<Thing>::find("pear", {}, "a thing").number, 2);
-  EXPECT_TRUE(Registry<Other>::entries().empty());  // control: each kind has a list of its own
+  EXPECT_TRUE(Registry<Other>::entries().empty());  // control: each kind has its own list
 }
 
 TEST(RegistryIdentity, AnUnknownNameIsAnsweredWithTheNearest) {
@@ -36,7 +36,7 @@ TEST(RegistryIdentity, AnUnknownNameIsAnsweredWithTheNearest) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "s.json:3: sky.model = pera: is not a thing of malus; did you mean pear? known are: "
+        "s.json:3: sky.model = pera: is not a thing of malus; did you mean pear? choose from: "
         "apple, pear");
   }
 }

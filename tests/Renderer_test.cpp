@@ -32,7 +32,8 @@ CDSpectralVector<double> spectrum(double first, double second) {
   return v;
 }
 
-/// A square metre for each pixel; the quarters of the ground have paints of their own and are lit from the zenith.
+/// A square metre for each pixel; the quarters of the ground have different paints and are lit
+/// from the zenith.
 Scene fourQuarters(std::size_t samples = 1) {
   World world;
   world.grid = two_bands;

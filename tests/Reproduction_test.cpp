@@ -65,7 +65,7 @@ TEST(ReproduceRegression, EveryDifferenceFromTheThesisSaysItsCause) {
       silent({{"verdict", "differs"}, {"kind", "thesis"}, {"cause", ""}}));  // negative control
 }
 
-// A report that is older than the program or a file of validation/ would say nothing of them.
+// A report that is older than the program or a file of validation/ would not test them.
 TEST(ReproduceRegression, TheReportIsThatOfThisProgramAndItsData) {
   const auto written = std::filesystem::last_write_time(report / "summary.txt");
   EXPECT_GE(written, std::filesystem::last_write_time(MALUS_PROGRAM));

@@ -63,7 +63,7 @@ Picture taken(const World& world, SensorKind kind, const Platform& platform) {
   return made;
 }
 
-// A glossy ball that lets nothing through, of facets two degrees wide, radius 1, in a sky that is even all around.
+// A glossy opaque ball, of facets two degrees wide, radius 1, in a sky that is even all around.
 const World& ball() {
   static const World world = [] {
     const auto all = [](double value) { return CDSpectralVector<double>(oneBand(), value); };
@@ -203,7 +203,7 @@ TEST(ScannersIdentity, TheMotionSaysHowThePictureLeans) {
 TEST(ScannersPublished, KeepingTheVerticalTurnsTheCornersBy2Point2Degrees) {
   SensorGeometry g;
   g.width = g.height = 2, g.principal_x = g.principal_y = 1;
-  g.focal_length_px = 0.5 * 5;  // the centre of the corner pixel stands at u = v = f/5
+  g.focal_length_px = 0.5 * 5;  // the centre of the corner pixel is at u = v = f/5
   const Sensor sensor(g, oneBand(), oneBand());
   const Pose pose = Pose::looking({0, 0, 15}, {0.3, 0.2, -1}, {0, 1, 0});
   const Radiometry::Ray ray = sensor.ray(1, 0, 0, Platform::fixed(pose), 0, 1);

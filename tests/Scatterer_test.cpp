@@ -201,7 +201,7 @@ TEST(ScattererInvariant, EveryConstantIsBounded) {
     EXPECT_NE(told.find("constants.csv"), std::string::npos) << names[column] << value;
     EXPECT_NE(told.find("degrees"), std::string::npos) << told;
   }
-  // control: a small change of the same constants is let pass
+  // control: a small change of the same constants is accepted
   EXPECT_EQ(read(2, 5, "1e-4"), "");
   EXPECT_EQ(read(2, 1, "2.9995"), "");
 }
@@ -275,7 +275,7 @@ TEST(ScattererRefusal, FunctionsThatAreNone) {
     }
     return std::string();
   };
-  EXPECT_EQ(complaint(functions(36, false, 1.01)), "");  // control: a per cent is let pass
+  EXPECT_EQ(complaint(functions(36, false, 1.01)), "");  // control: a per cent is accepted
   EXPECT_NE(complaint(functions(36, false, 1.1)).find("mean"), std::string::npos);
   std::string text = functions(36, false);
   EXPECT_NE(complaint(text.substr(0, text.rfind("180."))).find("180"), std::string::npos);

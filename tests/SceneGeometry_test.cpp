@@ -108,8 +108,7 @@ TEST(SceneGeometryIdentity, PolygonsThatNoFanFillsAreRefused) {
   }
   EXPECT_EQ(complaint(star + "f 1 2 3 4 5 6 7 8 9 10\n"),
             "m.obj:11: f = f 1 2 3 4 5 6 7 8 9 10: is a polygon that no fan of triangles from "
-            "one corner fills; let the program "
-            "that made the mesh cut it into triangles");
+            "one corner fills; triangulate the mesh in the program that made it");
 }
 
 TEST(SceneGeometryIdentity, DirectoriesAndVerticesBeyondTheWorldAreRefused) {
@@ -129,7 +128,8 @@ TEST(SceneGeometryIdentity, CornersAreWholeNumbersOf32BitsAndNothingElse) {
     EXPECT_EQ(
         complaint(corners + "f 1 2 " + bad + "\n"),
         "m.obj:4: f = " + bad +
-            ": is no corner of a face; write whole numbers below 2147483648: 7, 7/1, 7//3 or "
+            ": is not a corner of a face; write whole numbers below 2147483648: 7, 7/1, 7//3 "
+            "or "
             "7/1/3");
   for (const std::string good : {"3", "-1", "3/7", "3//9", "3/7/9", "-1/-1/-1"})
     EXPECT_EQ(complaint(corners + "f 1 2 " + good + "\n"), "none") << good;
@@ -140,8 +140,8 @@ TEST(SceneGeometryIdentity, NamesThatNoRecordCouldHoldAreRefusedWithTheirLine) {
   for (const std::string keyword : {"g", "o", "usemtl"}) {
     EXPECT_EQ(complaint("# saved as Latin-1\n" + keyword + " Stra\xdf\x65\n" + rest),
               "m.obj:2: " + keyword +
-                  " = Stra\\xdfe: is not UTF-8 from byte 5 on (0xdf); save it as UTF-8, or use "
-                  "letters of ASCII");
+                  " = Stra\\xdfe: is not UTF-8 at byte 5 (0xdf); save it as UTF-8, or use "
+                  "ASCII letters");
     EXPECT_NE(complaint(keyword + " " + std::string(1001, 'n') + "\n" + rest).find("is longer"),
               std::string::npos);
     EXPECT_EQ(complaint(keyword + " Stra\u00dfe\n" + rest), "none");
@@ -156,7 +156,7 @@ TEST(SceneGeometryIdentity, CoordinatesThatNobodyCouldSquareAreRefusedWithTheirL
         << bad;
 }
 
-// Each face has a group and a material of its own, and each name its own number.
+// Each face has its own group and material, and each name its own number.
 TEST(SceneGeometryIdentity, AHundredThousandNamesKeepTheirOrder) {
   constexpr std::uint32_t count = 100'000;
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

@@ -55,7 +55,7 @@ double apart(const Scene& a, const Scene& b) {
     }
   return most;
 }
-// The albedo that the record of the run tells.
+// The albedo in the record of the run.
 double toldAlbedo(const Scene& scene) {
   const std::string words = scene.world.air.at(0);
   return std::stod(words.substr(words.find("albedo ") + 7));
@@ -172,10 +172,10 @@ TEST(SceneGroundIdentity, AWrongGroundIsSaidAtItsPlace) {
   };
   EXPECT_EQ(complaint({{"ground", "plate"}}), "accepted");  // control
   has(complaint({{"ground", "plte"}}),
-      "sky.ground = plte: is no material of the scene; did you mean plate?");
-  has(complaint({{"ground", "plate"}, {"albedo", 0.2}}), "stands beside an albedo");
+      "sky.ground = plte: is not a material of the scene; did you mean plate?");
+  has(complaint({{"ground", "plate"}, {"albedo", 0.2}}), "conflicts with an albedo");
   has(complaint({{"ground", 0.2}}), "sky.ground = 0.2");
   const Outcome outcome = malusIn(".", "sky --tau 0.1 --mu0 0.5 --mu 0.5 --ground plate");
   EXPECT_EQ(outcome.code, 2);
-  has(outcome.err, "--ground = plate: is of a scene, and there is none");
+  has(outcome.err, "--ground = plate: needs a scene");
 }

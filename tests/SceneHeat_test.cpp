@@ -182,7 +182,7 @@ TEST(SceneHeatRefusal, SaysWhatIsWrongAndWhatToDo) {
   };
   has(folder.complaint({{"heat", nullptr}}), "materials.paint.thermal = {");
   has(folder.complaint({{"heat", nullptr}}),
-      "has no weather to be heated by; give the scene a \"heat\" with a weather file, or the "
+      "needs weather to be heated; give the scene a \"heat\" with a weather file, or the "
       "material a temperature_K instead");
   has(folder.complaint({{"materials", {{"paint", {{"thermal", nullptr}}}}}}),
       "heats no material; give a material of a surface its \"thermal\"");
@@ -205,13 +205,13 @@ TEST(SceneHeatRefusal, SaysWhatIsWrongAndWhatToDo) {
       "2500 nm from which it would follow; give solar_absorptance, 0 to 1, or a grid_nm that "
       "reaches there");
   has(folder.complaint({{"materials", {{"paint", {{"temperature_K", 300}}}}}}),
-      "stands beside \"thermal\"; leave it out: the weather gives the temperature");
+      "conflicts with \"thermal\"; leave it out: the weather gives the temperature");
   has(folder.complaint({{"sun",
                          {{"latitude_deg", 43},
                           {"longitude_deg", -77},
                           {"time", "2001-06-09T14:00:00Z"},
                           {"irradiance_W_m2_nm", 0}}}}),
-      "heat.latitude_deg = 43: is that of the sun already; leave it out here");
+      "heat.latitude_deg = 43: is already given by the sun; leave it out here");
   // a map gives places and not facets their materials
   const auto mapped = [](const char* second) {
     return json{{"geometry",

@@ -23,7 +23,7 @@ using nlohmann::json;
 namespace {
 const std::string bar = std::filesystem::absolute("scenes/chunky-bar.obj").string();
 
-/// Bars on a meadow; every third has names of its own.
+/// Bars on a meadow; every third has different names.
 struct Bars {
   json list = json::array();
   std::string table = "x_m,y_m,z_m,rotate_z_deg,rotate_x_deg,scale,facet_prefix\n";
@@ -143,7 +143,9 @@ TEST(ScenePlacementsIdentity, BadTablesNameTheirLine) {
   };
   EXPECT_EQ(said("x_m,y_m,z_m\n1,2,3\n"), "none");
   says("x_m,y_m\n1,2\n", "z_m");
-  says("x_m,y_m,z_m,skale\n1,2,3,1\n", "skale: is no column of placements; did you mean scale");
+  says("x_m,y_m,z_m,skale\n1,2,3,1\n",
+       "skale: is not a column of placements; did you mean "
+       "scale");
   says("x_m,y_m,z_m,scale\n1,2,3,1\n1,2,3,0\n", "p.csv:3: scale = 0: is out of its range");
   says("x_m,y_m,z_m\n1,2,three\n", "p.csv:2: z_m = three: is not a number");
   says("x_m,y_m,z_m\n", "places nothing");
@@ -160,7 +162,7 @@ TEST(ScenePlacementsInvariant, ACameraInASharedSolidIsRefused) {
   const std::string shared = complaint(scene, ".");
   scene["geometry"][0]["shared"] = false;
   for (const std::string& said : {shared, complaint(scene, ".")})
-    EXPECT_NE(said.find("stands inside of a solid"), std::string::npos) << said;
+    EXPECT_NE(said.find("is inside a solid"), std::string::npos) << said;
   scene["platform"]["position_m"] = {2.1, -1.8, 1.3};  // above it
   scene["geometry"][0]["shared"] = true;
   EXPECT_EQ(complaint(scene, "."), "none");
@@ -236,7 +238,7 @@ TEST(ScenePlacementsIdentity, PathsThatEndTooEarlyAreRefused) {
   says(bus_path.substr(0, bus_path.find("3,24")),
        "is known from 0 s to 2 s, and a picture is taken at 3 s");
   says("time_s,x_m,y_m,z_m\n0,0,0,0\n0,1,0,0\n", "is not after the time above it");
-  says("time_s,x_m,y_m,z_m\n0,0,0,0\n", "is no path");
+  says("time_s,x_m,y_m,z_m\n0,0,0,0\n", "is not a path");
   says("time_s,x_m,y_m\n0,0,0\n5,0,0\n", "z_m");
   json scanner = moving("bus.csv", true);
   put(scratch / "bus.csv", bus_path);

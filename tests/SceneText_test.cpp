@@ -1,4 +1,5 @@
-// Where the values of a scene file stand, and what is said of a broken one (nw/files/SceneText.nw, nw/base/Refusal.nw).
+// The positions of the values of a scene file, and the messages for a broken one
+// (nw/files/SceneText.nw, nw/base/Refusal.nw).
 #include "malus/files/SceneText.hpp"
 
 #include <gtest/gtest.h>

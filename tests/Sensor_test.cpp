@@ -32,7 +32,7 @@ TEST(PlatformIdentity, LookingDownEastIsRightAndNorthIsUp) {
   near(nadir.up, {0, 1, 0});
   near(nadir.back, {0, 0, 1});
   const Pose rolled = Pose::looking({0, 0, 15}, {0, 0, -1}, {0, 1, 0}, pi / 2);
-  near(rolled.right, {0, -1, 0});  // clockwise for who stands behind: the right hand goes down
+  near(rolled.right, {0, -1, 0});  // clockwise as seen from behind: the right side goes down
   near(rolled.up, {1, 0, 0});
   EXPECT_THROW(Pose::looking({}, {0, 0, -1}, {0, 0, 1}), MathError);
 }
@@ -73,7 +73,8 @@ TEST(PlatformIdentity, ATurningCameraLooksWestAfterAQuarter) {
       MathError);
 }
 
-// From above, x to the right and y up: who stands behind the camera sees it turn clockwise, its top to the right.
+// From above, x to the right and y up: seen from behind, the camera turns clockwise, its top to
+// the right.
 TEST(PlatformIdentity, AStaringCameraRollsByFrame) {
   const auto staring = [](std::vector<double> roll_rad) {
     return Platform::staring({0, 0, 3}, {}, {0, 0, 0}, {0, 1, 0}, std::move(roll_rad), 3, 1);

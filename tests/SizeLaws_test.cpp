@@ -1,4 +1,4 @@
-// Laws of sizes (nw/air/SizeLaws.nw): their moments, and that enough radii stand for them.
+// Laws of sizes (nw/air/SizeLaws.nw): their moments, and that enough radii represent them.
 #include "malus/air/SizeLaws.hpp"
 
 #include <gtest/gtest.h>
@@ -80,8 +80,9 @@ TEST(SizeLawsIdentity, ANarrowLawIsOneRadius) {
   EXPECT_EQ(effectiveSize(oneRadius(200)).variance, 0);
 }
 
-// Half of the radii give nearly the same powder, and so all of them are better than that: the ripple of spheres, not
-// the law, asks for the steps, and the narrow peaks of the larger ones cost two digits.
+// Half of the radii give nearly the same powder, and so all of them are better than that: the
+// ripple of spheres, not the law, determines the steps, and the narrow peaks of the larger ones
+// cost two digits.
 TEST(SizeLawsInvariant, ThereAreEnoughRadii) {
   const Radii fine = gammaRadii(200, 0.07, 951), large = logNormalRadii(300, 1.5, 550);
   for (const Radii* radii : {&fine, &large}) {

@@ -165,7 +165,7 @@ TEST(SizeMixturesIdentity, AMixtureLightsASky) {
   EXPECT_EQ(sky.code, 0) << sky.err;
   EXPECT_NE(contents(scratch / "haze.csv").find("# extinction_per_km: 0.03"),
             std::string::npos);
-  // a table of two wavelengths, of which one is asked for
+  // a table of two wavelengths, of which one is requested
   put(scratch / "two.csv",
       "wavelength_nm,number_cm3,n,radius_um\n440,1,1.5,0.2\n550,1,1.4,0.2\n");
   EXPECT_EQ(answered(scratch, "--sizes two.csv").number(0, "Q_ext"),
@@ -181,10 +181,10 @@ TEST(SizeMixturesRefusals, BrokenModes) {
     return complaint(columns + "1,1.5,0,0.1,1.6,,,\n" + cells + "\n");
   };
   EXPECT_EQ(row("0,1.5,0,0.1,1.6,,,"),
-            "sizes.csv:3: number_cm3 = 0: must be above 0, up to 1e+15; mend the mode");
-  EXPECT_EQ(row("1,1.5,-1,0.1,1.6,,,"), "sizes.csv:3: k = -1: must be 0 to 100; mend the mode");
+            "sizes.csv:3: number_cm3 = 0: must be above 0, up to 1e+15; fix the mode");
+  EXPECT_EQ(row("1,1.5,-1,0.1,1.6,,,"), "sizes.csv:3: k = -1: must be 0 to 100; fix the mode");
   EXPECT_EQ(row("1,1.5,0,0.1,9,,,"),
-            "sizes.csv:3: deviation = 9: must be 1.01 to 3; mend the mode");
+            "sizes.csv:3: deviation = 9: must be 1.01 to 3; fix the mode");
   EXPECT_EQ(row("1,1.5,0,0.1,,,,").substr(0, 38), "sizes.csv:3: deviation: the number is ");
   EXPECT_EQ(row("1,1.5,0,0.1,1.6,,,0.2").substr(0, 50),
             "sizes.csv:3: has no law of sizes, or several; fill");
@@ -198,10 +198,10 @@ TEST(SizeMixturesRefusals, BrokenModes) {
             "a law of sizes");
   EXPECT_EQ(complaint("").substr(0, 19), "sizes.csv: is empty");
   EXPECT_EQ(complaint(columns + "1,1.5,0,0.1,1.6,,,\n", "--row 1"),
-            "sizes.csv: 1: is no choice among modes; leave out --row, which chooses an "
+            "sizes.csv: 1: selects nothing among modes; leave out --row, which chooses an "
             "inversion of AERONET");
   EXPECT_EQ(complaint(columns + "1,1.5,0,0.1,1.6,,,\n", "--n 1.5"),
-            "command line: --n: stands beside an index in the file; leave it out");
+            "command line: --n: conflicts with an index in the file; leave it out");
   EXPECT_EQ(complaint("number_cm3,radius_um\n1,0.1\n").substr(0, 32),
             "command line: --n: is missing; g");
   EXPECT_EQ(complaint(columns + "1,1.5,0,0.1,1.6,,,\n", "--deviation 2").substr(0, 57),
@@ -232,7 +232,7 @@ TEST(SizeMixturesRefusals, BrokenInversions) {
       changed("0.010422", "-999"),
       "sizes.csv:5: 0.086077 = -999: was not found by the inversion; choose another inversion");
   EXPECT_EQ(changed("0.010422", "-0.01"),
-            "sizes.csv:5: 0.086077 = -0.01: is no volume at a radius above the one before; "
+            "sizes.csv:5: 0.086077 = -0.01: is not a volume at a radius above the one before; "
             "give dV/dlnr, 0 or more, with the "
             "radii in order");
   EXPECT_EQ(changed("0.010422", "O.01").substr(0, 40),
@@ -242,13 +242,12 @@ TEST(SizeMixturesRefusals, BrokenInversions) {
   EXPECT_EQ(changed("1.581700", "N/A").substr(0, 60),
             "sizes.csv:5: Refractive_Index-Real_Part[440nm] = N/A: is not");
   EXPECT_EQ(changed("Version", "version", "--n 1.5"),
-            "command line: --n: stands beside an index in the file; leave it out");
+            "command line: --n: conflicts with an index in the file; leave it out");
   const Scratch scratch;
   put(scratch / "sgp.all", whole);
   const Outcome beyond = malusIn(scratch.path, "mie --sizes sgp.all --wavelength-nm 400");
   EXPECT_EQ(beyond.code, 2);
   EXPECT_EQ(beyond.err,
             "sgp.all:5: Refractive_Index-Real_Part[...] = 400 nm: is not covered: the file has "
-            "440 to 1020 nm; ask for a "
-            "wavelength between; nothing is extrapolated\n");
+            "440 to 1020 nm; choose a wavelength in between; nothing is extrapolated\n");
 }

@@ -95,8 +95,8 @@ TEST(SkyFileIdentity, WhatIsWrongIsSaid) {
     EXPECT_EQ(outcome.code, 2) << flags;
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
-  refused("--sky sky.json --albedo 0.1", "--albedo = 0.1: stands beside --sky");
-  refused("--sky sky.json --model uniform", "--model = uniform: stands beside --sky");
+  refused("--sky sky.json --albedo 0.1", "--albedo = 0.1: conflicts with --sky");
+  refused("--sky sky.json --model uniform", "--model = uniform: conflicts with --sky");
   refused("--sky none.json", "is neither a scene nor a sky");
   refused("--sky dark.json", "has no sky");
   refused("--sky absent.json", "absent.json");

@@ -103,7 +103,7 @@ std::string complaint(const std::function<void()>& read) {
   }
   return "read";
 }
-// What a printout with one text in place of another answers.
+// The result of a printout with one text replaced by another.
 std::string changed(const std::string& old, const std::string& fresh, const Printing& p = {}) {
   std::string text = uvspec(p);
   EXPECT_NE(text.find(old), text.npos) << old;
@@ -317,11 +317,12 @@ TEST(SkyPrintoutsByHand, RunsOfATape7) {
   const auto refused = [&] { return complaint([&] { skyOf(scratch / "sky.csv"); }); };
   write(",3");
   has(refused(),
-      "sky.csv:5: run = 3: is no run of tape7, which holds 2; say which one in a column run");
+      "sky.csv:5: run = 3: is not a run of tape7, which has 2; give its number in a column "
+      "run");
   write(",1.5");
-  has(refused(), "sky.csv:5: run = 1.5: is no run of tape7");
+  has(refused(), "sky.csv:5: run = 1.5: is not a run of tape7");
   write("");
-  has(refused(), "sky.csv:4: printout = tape7: is no run of tape7, which holds 2");
+  has(refused(), "sky.csv:4: printout = tape7: is not a run of tape7, which has 2");
 }
 
 // Half a circle of MYSTIC's: the other half has the opposite U. One azimuth alone must be declared.
@@ -348,7 +349,7 @@ TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
       "sky.out: unit: is missing; begin the file with a line such as");
   has(changed("mW m^-2", "kW m^-2"), "sky.out: unit = kW m^-2 sr^-1 nm^-1: is no unit of");
   has(changed("# convention: iprt\n", ""), "sky.out: convention: is missing; declare");
-  has(changed("iprt", "malus"), "has azimuths of the compass, and phi is none");
+  has(changed("iprt", "malus"), "has compass azimuths, and phi is not one");
   has(changed("   550.000", "   500.000"), "does not follow the wavelength before it");
   has(changed("-0.996195  0.000000e+00", "-0.996195  0.000000f+00"),
       ":7: radiance = 0.000000f+00: is not a number");
@@ -356,9 +357,11 @@ TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
   has(changed("-0.996195 ", "-1.0 "), "umu = -1: does not ascend");
   has(changed("-0.996195 ", "-0.995195 ", {.components = 1}),
       "are not those of the first block");
-  has(changed("Stokes vector Q", "Stokes vector U"), "is no line of a printout");
+  has(changed("Stokes vector Q", "Stokes vector U"), "is not a line of a printout");
   has(changed("       350.000", ""), "holds 38 numbers; give 37");
-  has(changed("        20.000", "         5.000"), "phi = 5: is no azimuth in ascending order");
+  has(changed("        20.000", "         5.000"),
+      "phi = 5: is not an azimuth in ascending "
+      "order");
   Printing p;
   p.first_zenith_deg = 2;
   has(complaint([&] { skyOf(uvspec(p)); }), "umu = -0.999391: is not the zenith");
@@ -431,7 +434,8 @@ TEST(SkyPrintoutsRefusal, Listings) {
   has(empty.refused(), "sky.csv: printout: names no printout; give a row");
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
-  has(gone.refused(), "sky.csv:9: printout = special.txt: is not there; name a file");
+  has(gone.refused(),
+      "sky.csv:9: printout = special.txt: does not exist; give the name of a file");
   const Listing twice(modtran5, modtran5);
   put(twice / "sky.csv", contents(twice / "sky.csv") + "80,30,common.txt\n");
   has(twice.refused(), "sky.csv:18: zenith_deg = 80: repeats the direction");
@@ -507,7 +511,7 @@ TEST(SkyPrintoutsInvariant, AScene) {
   EXPECT_FALSE(read.world.sky->polarized());
 }
 
-// As a user meets them: an answer of malus sky, and a broken file with exit code 2 and one line.
+// For a user: a result of malus sky, and a broken file with exit code 2 and one line.
 TEST(SkyPrintoutsInvariant, MalusSkyTakesThem) {
   const Scratch scratch;
   put(scratch / "sky.out", uvspec());

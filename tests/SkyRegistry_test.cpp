@@ -115,10 +115,10 @@ TEST(SkyRegistryIdentity, WhatIsWrongIsSaidAtItsPlace) {
   has(complaint({{"model", "rayleigh"}, {"tau", 0.2}, {"pressure_hPa", 900}}),
       "sky.pressure_hPa: changes nothing beside an optical depth");
   has(complaint({{"model", "rayleigh"}, {"aerosol_tau", 0.2}}),
-      "sky.aerosol_tau: belongs to no aerosol");
+      "sky.aerosol_tau: needs an aerosol");
   has(complaint({{"model", "table"}}), "lacks \"file\"");
   has(complaint({{"model", "uniform"}, {"path_radiance", true}, {"temperature_K", 300}}),
-      "sky.path_radiance = true: is not known of such a sky");
+      "sky.path_radiance = true: is not available for this sky");
   for (const char* flag : {"--fluxes", "--mu 0.5 --direction up", "--mu 0.5 --tau-obs 0.1",
                            "--mu 0.5 --path --direction up"}) {
     const Outcome outcome = malusIn(
@@ -129,7 +129,7 @@ TEST(SkyRegistryIdentity, WhatIsWrongIsSaidAtItsPlace) {
   }
   const Outcome stranger = malusIn(".", "sky --tau 0.1 --mu0 0.5 --mu 0.5 --temperature-K 300");
   EXPECT_EQ(stranger.code, 2);
-  EXPECT_NE(stranger.err.find("--temperature-K = 300: is no parameter of rayleigh"),
+  EXPECT_NE(stranger.err.find("--temperature-K = 300: is not a parameter of rayleigh"),
             std::string::npos)
       << stranger.err;
 }

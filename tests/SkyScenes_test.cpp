@@ -188,7 +188,7 @@ TEST(SkyScenesInvariant, TheRecordSaysHowTheSkyIsPolarised) {
   EXPECT_NEAR(plain.getScalar() / full.getScalar(), 1, 1e-3);
   EXPECT_LT(plain.getDOLP(), 1e-3);
   EXPECT_GT(full.getDOLP(), 0.05);
-  // a scene that promises more than its sky has
+  // a scene that states more polarisation than its sky has
   json scene = mirrorScene(
       40, 60, {{"model", "table"}, {"file", "partly.csv"}, {"polarization", "full"}});
   put(scratch / "s.json", scene.dump());

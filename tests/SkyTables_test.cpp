@@ -85,7 +85,8 @@ std::pair<double, double> errorsOf(const Sky& sky) {
 }
 }  // namespace
 
-// Planes through neighbours err as the square of their distance, so as 1/count; the horizon, where the sky
+// The error of planes through neighbours is proportional to the square of their distance, so as
+// 1/count; the horizon, where the sky
 // brightens within degrees, less. Four times as many measurements must halve the error at least.
 TEST(SkyTablesInvariant, ScatteredDirectionsBecomeASky) {
   for (const auto convention :

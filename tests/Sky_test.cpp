@@ -1,4 +1,5 @@
-// The sky as the radiometry asks it, tables of it, and a haze (nw/air/Sky.nw, nw/air/TableSky.nw).
+// The sky as the radiometry evaluates it, tables of it, and a haze (nw/air/Sky.nw,
+// nw/air/TableSky.nw).
 #include "malus/air/Sky.hpp"
 
 #include <fmt/format.h>
@@ -60,7 +61,7 @@ std::string written(SkyConvention convention, double u_sign = 1, double step = 5
   for (double zenith = 0; zenith <= 90; zenith += step)
     for (double azimuth = 0; azimuth < 360; azimuth += step) {
       const double compass = azimuth + (ours ? 0 : sun_azimuth_deg);
-      // in the zenith each row has the axes of its own azimuth: the limit of small zenith angles
+      // in the zenith each row has the axes of its azimuth: the limit of small zenith angles
       const CDVector d = compassDirection(std::max(zenith, 1e-7) * degree, compass * degree);
       double q, u;
       const double i = rayleigh(d, to_sun).getScalar();
@@ -155,7 +156,8 @@ TEST(SkyInvariant, LightScatteredOnceIsPolarisedAcrossThePlaneOfScattering) {
   EXPECT_NEAR(dot(field, to_sun), 0, 1e-6);  // AoLP from decimal numbers; d is a node
 }
 
-// Between nodes linear interpolation errs by h^2/8 times the second derivative; components are sums of
+// Between nodes linear interpolation has an error of h^2/8 times the second derivative;
+// components are sums of
 // harmonics of the angles up to the second: |f''| <= 4 |f|, two angles.
 TEST(SkyInvariant, InterpolationErrsAsTheStepSquared) {
   for (const double step : {10.0, 5.0}) {
@@ -375,7 +377,8 @@ TEST(SkyInvariant, ABlackSkyIsDrawnEvenly) {
   EXPECT_THROW(HemisphereDistribution([](const CDVector&) { return -1.0; }), MathError);
 }
 
-// Two halves of a path are the whole path; no path changes nothing; a very long one forgets the scene.
+// Two halves of a path are the whole path; no path changes nothing; a very long one hides the
+// scene.
 RC_GTEST_PROP(AtmosphereInvariant, HazeComposes, ()) {
   const auto grid = SpectralGrid::make({500.0});
   const double beta = *rc::gen::inRange(0, 1000) * 1e-5,

@@ -57,8 +57,8 @@ bool moved(const World& world, Hit hit, const CDVector& to_viewer, const CDVecto
   return (finishHit(world, to_viewer, hit.point, 0.5, hit).normal - normal).getLength() > 1e-9;
 }
 
-// The root mean square of the difference from a round, matt ball in the sun, over a lattice of parallel rays that meet it
-// where the sun stands more than 20 degrees high.
+// The root mean square of the difference from a round, matt ball in the sun, over a lattice of
+// parallel rays that meet it where the sun is more than 20 degrees high.
 double roughness(std::uint32_t rows, bool smooth) {
   World world = ball(rows, matt(1), smooth);
   const CDVector to_sun = normalized(CDVector{0.3, -1, 0.4});
@@ -127,7 +127,7 @@ TEST(SmoothNormalsIdentity, NoLightLeaksThroughTheBody) {
   }
 }
 
-// Whatever the wanted normal, the viewer is above it, and the mirror direction above the triangle.
+// For any given normal, the viewer is above it, and the mirror direction above the triangle.
 TEST(SmoothNormalsInvariant, TheNormalIsSeenAndItsMirrorDirectionIsOutside) {
   const World world = ball(5, matt(1), true);
   const RayTracer tracer(world.geometry);

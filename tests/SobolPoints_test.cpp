@@ -315,7 +315,7 @@ TEST(SobolPointsIdentity, ABlockOfPointsIsThePointsOneByOne) {
   }
 }
 
-// A reader keeps a block, and must notice when another one is wanted: forth, back, and again.
+// A reader keeps a block, and must notice when another one is needed: forwards, back, and again.
 TEST(SobolPointsIdentity, AReaderGivesThePointsInAnyOrder) {
   const SobolPoints points(3, 1, 4);
   SobolReader all(points, 4), three(points, 3);

@@ -57,7 +57,7 @@ double at(const std::filesystem::path& file, double nm,
   return readSpectrum(file, column, SpectralGrid::make({nm}), limits)[0];
 }
 
-// What a spectrum with one text in place of another answers.
+// The result of a spectrum with one text replaced by another.
 std::string changed(const std::string& text, const std::string& old, const std::string& fresh,
                     const std::string& name = "oak.txt") {
   const Library library;
@@ -100,12 +100,12 @@ TEST(SpectralLibrariesIdentity, ASceneTakesThem) {
             std::string::npos);  // it belongs to what the picture was made of
   const Outcome gap = scene("ChapterM_Minerals/" + usgs_name, "425, 560");
   EXPECT_EQ(gap.code, 2);
-  EXPECT_NE(
-      gap.err.find(usgs_name +
-                   ":5: reflectance = 500 to 650 nm: is a gap of deleted channels, which the "
-                   "band at 560 "
-                   "nm needs; leave out the band, or give another spectrum of the material"),
-      std::string::npos)
+  EXPECT_NE(gap.err.find(
+                usgs_name +
+                ":5: reflectance = 500 to 650 nm: is a gap of deleted channels, but the "
+                "band at 560 "
+                "nm needs them; leave out the band, or give another spectrum of the material"),
+            std::string::npos)
       << gap.err;
   const Outcome beyond = scene("oak.txt", "450, 800");
   EXPECT_EQ(beyond.code, 2);
@@ -125,7 +125,7 @@ TEST(SpectralLibrariesRefusals, BandsThatNeedWhatIsNotThere) {
             }).find(usgs_name + ":8: reflectance = 1.02 at 700 nm: is beyond its limits"),
             std::string::npos);
   EXPECT_EQ(complaint([&] { at(library / "oak.txt", 450, "irradiance_W_m2_nm", {}); }),
-            "oak.txt: reflectance: is what this spectrum of a library holds, not "
+            "oak.txt: reflectance: is the quantity of this library spectrum, not "
             "irradiance_W_m2_nm; give a table with that "
             "column");
 }
@@ -136,12 +136,13 @@ TEST(SpectralLibrariesRefusals, BrokenFilesOfECOSTRESS) {
   EXPECT_EQ(changed(ecostress, "\t 10.0", ""),
             "oak.txt:13:  0.5000: holds 1 numbers; give 2 as in the lines before");
   EXPECT_EQ(changed(ecostress, "Values: 3", "Values: 4"),
-            "oak.txt: 3 values: but its header promises 4; give the whole file of the library");
+            "oak.txt: 3 values: but its header says 4; give the whole file of the library");
   EXPECT_EQ(changed(ecostress, "(micrometers)", "(1/cm)"),
-            "oak.txt:8: (1/cm): is no unit of wavelengths; give a spectrum over Wavelength "
+            "oak.txt:8: (1/cm): is not a unit of wavelength; give a spectrum over Wavelength "
             "(micrometers) or (nanometers)");
   EXPECT_EQ(changed(ecostress, "(percentage)", "(dB)"),
-            "oak.txt:9: (dB): is no unit of shares; give a spectrum in (percent), (percentage) "
+            "oak.txt:9: (dB): is not a unit of reflectance or transmittance; give a spectrum "
+            "in (percent), (percentage) "
             "or (fraction)");
   EXPECT_EQ(
       changed(ecostress, "X Units", "X Unit"),
@@ -149,7 +150,7 @@ TEST(SpectralLibrariesRefusals, BrokenFilesOfECOSTRESS) {
   EXPECT_EQ(changed(ecostress, "0.5000", "0.4000").substr(0, 40),
             "oak.txt:13: wavelength = 400 nm: does no");
   EXPECT_EQ(changed(ecostress, "Reflectance", "Transmittance").substr(0, 45),
-            "oak.txt: transmittance: is what this spectrum");
+            "oak.txt: transmittance: is the quantity of this library spectrum");
 }
 
 TEST(SpectralLibrariesRefusals, BrokenFilesOfTheUSGS) {
@@ -168,7 +169,7 @@ TEST(SpectralLibrariesRefusals, BrokenFilesOfTheUSGS) {
   EXPECT_EQ(complaint([&] {
               at(library / wavelengths_name, 450);
             }).substr(0, wavelengths_name.size() + 36),
-            wavelengths_name + ":1: is no spectrum of the library; g");
+            wavelengths_name + ":1: is not a spectrum of the library; g");
   put(library / wavelengths_name, " splib07a Record=13: Wavelengths BECK\n 0.40\n 0.4x\n");
   EXPECT_EQ(
       complaint([&] { at(library.mineral(), 450); }).substr(0, wavelengths_name.size() + 25),

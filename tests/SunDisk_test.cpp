@@ -1,5 +1,5 @@
-// The sun's disk against answers that do not come from the radiometry: segments and lenses of circles, Fresnel's
-// reflectance, and sums over the disk (explained in nw/render/Radiometry.nw, section "The sun's disk").
+// The sun's disk against independent results: segments and lenses of circles, Fresnel's
+// reflectance, and sums over the disk (nw/render/SunDisk.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -118,8 +118,8 @@ Share lit(const World& world, const CDVector& at, std::uint64_t pixels = 20000) 
   return {e.mean[0] / full, e.error[0] / full};
 }
 
-// Statistical tolerance: 5.5 standard errors are passed by chance once in ten million. A share of exactly 0 or 1 has no
-// error of its own; one miss in all is allowed for.
+// Statistical tolerance: 5.5 standard errors are passed by chance once in ten million. A share
+// of exactly 0 or 1 has no error; one miss in all is allowed.
 void expectShare(const Share& share, double expected, const std::string& where) {
   EXPECT_NEAR(share.mean, expected, 5.5 * share.error + 1e-4) << where;
 }
@@ -235,8 +235,8 @@ TEST(SunDiskPublished, EclipseByASphere) {
   }
 }
 
-// The samples of one pixel avoid each other: 256 of them in a penumbra err at least three times less than independent
-// ones would, sqrt(F (1 - F) / 256) = 0.031.
+// The samples of one pixel are spread evenly: the error of 256 of them in a penumbra is at
+// least three times smaller than that of independent ones, sqrt(F (1 - F) / 256) = 0.031.
 TEST(SunDiskInvariant, SamplesOfAPixelAvoidEachOther) {
   const double h = 10, u = 0.2;
   const World world =
@@ -315,8 +315,9 @@ TEST(SunDiskInvariant, TheCameraSeesTheDisk) {
 }
 
 // Facets so flat that the plate is a mirror show the disk with Fresnel's reflectance times its radiance, polarised as Fresnel
-// says, and nothing beside the disk. Tolerance: the half vector has seven digits, so at sigma = 1e-6 a ray of 64 errs by about a tenth;
-// with 50 pixels the mean errs by 2e-3. Wider lobes: the reflectance over the lobe differs by less.
+// says, and nothing beside the disk. Tolerance: the half vector has seven digits, so at sigma =
+// 1e-6 a ray of 64 is off by about a tenth; with 50 pixels the mean is off by 2e-3. Wider
+// lobes: the reflectance over the lobe differs by less.
 TEST(SunDiskPublished, SmoothSurfacesMirrorTheSun) {
   for (const auto& [n, k] : {std::pair{0.405, 2.95}, std::pair{1.5, 0.0}})
     for (const double theta_deg : {20.0, 60.0})
@@ -342,7 +343,8 @@ TEST(SunDiskPublished, SmoothSurfacesMirrorTheSun) {
 }
 
 // From mirrors to matt metal: the glint is the sum over the disk, with 64 rays of importance, with one, and with the
-// thesis's samplings; and no single answer exceeds 1.5 (the sun's ray and all others) or 1.12 (the sun's ray alone) times
+// thesis's samplings; and no single result exceeds 1.5 (the sun's ray and all others) or 1.12
+// (the sun's ray alone) times
 // reflectance times radiance. The reflectance varies by less than 3 % over the disk.
 TEST(SunDiskInvariant, GlintsOfEveryRoughnessAreTheSumOverTheDisk) {
   const double radiance = 1 / (pi * std::sin(alpha) * std::sin(alpha));
@@ -409,7 +411,7 @@ TEST(SunDiskInvariant, MattPaintUnderASmoothGloss) {
   }
 }
 
-// The answer depends on the ray alone: alone, or among others in another order.
+// The result depends on the ray alone: alone, or among others in another order.
 TEST(SunDiskInvariant, CompanyChangesNoBit) {
   const World world = sunlit(
       worldOf({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, facets(0.4, 2.9, 0.01)},

@@ -75,7 +75,8 @@ std::vector<Bunch> seenFromFloor(const World& world, const CDVector& at,
   return bunches;
 }
 
-/// A floor and a vertical wall at x = 1, which looks west; the sun stands 30 degrees from the zenith in the west.
+/// A floor and a vertical wall at x = 1, which faces west; the sun is 30 degrees from the
+/// zenith in the west.
 World wallWorld(const Model& floor, const Model& wall) {
   World world = worldOf({floorOf(floor), {{1, -1, 0}, {1, -1, 3}, {1, 1, 3}, {1, 1, 0}, wall}},
                         uniformSky(0.05));
@@ -164,7 +165,8 @@ TEST(SunImagesIdentity, ACutThatLeavesNothingIsNoBunch) {
   EXPECT_TRUE(bunch.cut({-1, 1}, {-1, 1}));
 }
 
-// Equation image: in a wall that looks west the sun in the west stands in the east, as high.
+// Equation image: in a wall that faces west the image of the sun in the west is in the east, at
+// the same height.
 TEST(SunImagesPublished, AWallShowsTheSunWhereAMirrorDoes) {
   const World world = wallWorld(matt(0.5), copper(0.1));
   EXPECT_EQ(SunImages(world).mirrors(), 1u);
@@ -180,7 +182,8 @@ TEST(SunImagesPublished, AWallShowsTheSunWhereAMirrorDoes) {
   EXPECT_TRUE(seenFromFloor(world, {-9, 0, 0}, {0, 0, 1}).empty());
 }
 
-// A floor with a lobe of its own, seen from where it mirrors the image: both lobes have their middle there.
+// A floor with its own lobe, seen from where it mirrors the image: both lobes have their middle
+// there.
 TEST(SunImagesIdentity, TwoLobesThatAgreeMeetInTheirMiddle) {
   const World world = wallWorld(copper(0.2), copper(0.1));
   const CDVector viewer{-0.5, 0, std::sqrt(0.75)};

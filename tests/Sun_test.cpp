@@ -1,4 +1,4 @@
-// Where the sun stands and how bright it is (nw/air/Sun.nw).
+// The position and the irradiance of the sun (nw/air/Sun.nw).
 #include "malus/air/Sun.hpp"
 
 #include <gtest/gtest.h>
@@ -96,7 +96,8 @@ TEST(SunIdentity, CompassAnglesAndVectors) {
   EXPECT_EQ(compassAzimuth_rad({-0.0, -0.0, 1}), 0);
 }
 
-// A film's frame has its sun to the last bit, whatever was asked before, and in whichever thread. The third question is one
+// A film's frame has its sun to the last bit, after any other evaluation, and in any thread.
+// The third question is one
 // hour before the first: near enough for libnova to keep its nutation, which then differs by 1e-7 degrees.
 TEST(SunInvariant, DoesNotDependOnFormerQuestions) {
   const auto zenith = [](const char* time) {

@@ -54,7 +54,7 @@ std::vector<FitSample> polished(const std::vector<double>& angles_deg, double n,
 }
 }  // namespace
 
-// The fit knows the diffuse term's mean from the table (1e-5 absolute), the truth may sum it anew.
+// The fit takes the diffuse term's mean from the table (1e-5 absolute), the truth may sum it again.
 TEST(SurfaceFitIdentity, SamplesWithoutNoiseGiveTheParametersBack) {
   const double surfaces[][3] = {
       {0.405, 2.950, 0.2}, {1.5, 0.3, 0.1}, {2.9, 3.1, 0.35}, {0.2, 5, 0.15}};
@@ -183,6 +183,6 @@ TEST(SurfaceFitInvariant, WhatCannotBeToldIsRefused) {
   EXPECT_NO_THROW(fitSurface(polished({0, 70}, 0.405, 2.95), smooth));  // negative control
   EXPECT_THROW(fitSurface({}), MathError);
   EXPECT_THROW(fitSurface(polished({30}, 1.5, 0.1), {{1.5, 0.1, 0.1, 1.0}}), MathError);
-  // a polished sample says nothing of sigma
+  // a polished sample does not determine sigma
   EXPECT_THROW(fitSurface(polished({20, 45, 60}, 1.5, 1)), MathError);
 }

@@ -91,10 +91,10 @@ TEST(TableIdentity, AFaultIsNamedByLineAndColumn) {
       "t.csv:2: 1: is followed by text after its closing quote; write a quote inside quotes "
       "twice, and a comma between cells");
   EXPECT_EQ(complaint("# title: nothing\n"),
-            "t.csv: holds no line of column names; begin with a line such as "
+            "t.csv: has no line of column names; begin with a line such as "
             "theta_i_deg,theta_r_deg,phi_deg");
   EXPECT_EQ(complaint("theta_deg,n\n1,2\n", "teta_deg"),
-            "t.csv:1: teta_deg: is not among the columns; did you mean theta_deg? known are: "
+            "t.csv:1: teta_deg: is not among the columns; did you mean theta_deg? choose from: "
             "theta_deg, n");
 }
 
@@ -189,7 +189,7 @@ TEST(TableInvariant, AFileIsWrittenWholeOrNotAtAll) {
   TableWriter writer({"a"});
   writer.row({1.0}).save(directory / "deep" / "t.csv");
   EXPECT_EQ(Table::read(directory / "deep" / "t.csv").number(0, "a"), 1.0);
-  EXPECT_THROW(writer.save(directory / "deep"), InputError);  // a directory stands in the way
+  EXPECT_THROW(writer.save(directory / "deep"), InputError);  // a directory has this name
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
     files += entry.is_regular_file();
@@ -197,7 +197,8 @@ TEST(TableInvariant, AFileIsWrittenWholeOrNotAtAll) {
   std::filesystem::remove_all(directory);
 }
 
-// What is no file of its own is not replaced: the file behind a link is, and a pipe swallows the text and stays a pipe.
+// Only regular files are replaced: behind a link the file is, and a pipe takes the text and
+// stays a pipe.
 TEST(TableInvariant, LinksAndPipesStayWhatTheyAre) {
   const Scratch scratch;
   put(scratch / "file", "old\n");

@@ -156,7 +156,7 @@ TEST(TerrainIdentity, RastersThatAreNoMapInMetresAreRefused) {
   };
   const std::string good = slope().bytes();
   EXPECT_EQ(complaint(good), "none");
-  says(complaint(good, 2), "band 2 is asked for");
+  says(complaint(good, 2), "band 2 is requested");
   TIFF degrees = slope();
   degrees.model = 2, degrees.system = 4326;
   says(complaint(degrees.bytes()), "in degrees; project it: gdalwarp");

@@ -89,7 +89,7 @@ TEST(ThermalAirInvariant, AColumnLosesTheSameAtBothEnds) {
   }
 }
 
-// Kirchhoff: in a room of air of its own temperature a black body cannot be seen.
+// Kirchhoff: in a room of air at its temperature a black body cannot be distinguished.
 TEST(ThermalAirInvariant, ABlackBodyOfTheAirsTemperatureIsHidden) {
   const ThermalPath path(ThermalAir(290, depths(0.4), 2000));
   const CDVector from{10, 20, 0}, ends[]{{0, 0, 5}, {3000, 0, 0}, {500, 500, 20000}};
@@ -198,7 +198,8 @@ TEST(ThermalAirIdentity, InAScene) {
   EXPECT_NEAR(seen(*made.world.sky, 0.5), planckRadiance(10000, 290) * -std::expm1(-0.8), 1e-7);
   ASSERT_TRUE(made.world.atmosphere);
   scene["sky"]["atmosphere"] = "us-standard";
-  EXPECT_NE(complaint().find("does not say in one way how warm the air is; give temperature_K "
+  EXPECT_NE(complaint().find("does not specify the temperature of the air exactly once; give "
+                             "temperature_K "
                              "or atmosphere"),
             std::string::npos)
       << complaint();
@@ -215,5 +216,5 @@ TEST(ThermalAirRefusal, SaysWhatIsWrong) {
   EXPECT_EQ(refused(290, 0.4, 2000), "");
   EXPECT_EQ(refused(290, -0.4, 2000), "air has no optical depth of -0.4");
   EXPECT_EQ(refused(290, 0.4, 0), "air has no scale height of 0 m");
-  EXPECT_EQ(refused(-1, 0.4, 2000), "there is no black body of -1 K at 8500 nm");
+  EXPECT_EQ(refused(-1, 0.4, 2000), "a black body of -1 K at 8500 nm cannot be evaluated");
 }

@@ -56,7 +56,8 @@ TEST(TownInvariant, NoonAndNightOfOneScene) {
   }
   EXPECT_GT(rowMean(pictures[0], 0, blue), 2 * rowMean(pictures[0], 0, red));        // the sky
   EXPECT_LT(rowMean(pictures[0], bottom, blue), rowMean(pictures[0], bottom, red));  // a wall
-  // the sky at 10 um is the same day and night, but for the sun's millionth; what stands below is not
+  // the sky at 10 um is the same day and night, but for the sun's millionth; the surfaces below
+  // are not
   EXPECT_NEAR(rowMean(pictures[1], 0, infrared) / rowMean(pictures[0], 0, infrared), 1, 1e-3);
   EXPECT_LT(rowMean(pictures[1], bottom, infrared),
             0.95 * rowMean(pictures[0], bottom, infrared));

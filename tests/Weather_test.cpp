@@ -105,7 +105,8 @@ TEST_F(WeatherTable, RefusesWhatIsBroken) {
             "june.csv:3: direct_normal_W_m2 = -1: must be 0 to 1500 W/m^2; if the value is "
             "missing, put one between its neighbours, or cut the file there");
   EXPECT_EQ(complaint(with("dew_point_C", "dew_point_K")),
-            "june.csv: has no long wave of the sky; give a column sky_longwave_W_m2 or, for "
+            "june.csv: has no longwave radiation of the sky; give a column sky_longwave_W_m2 "
+            "or, for "
             "clear skies, dew_point_C");
   EXPECT_EQ(
       complaint(std::string(header) + "2001-06-10T04:00:00Z,20,2,0,0,10\n"),

@@ -114,7 +114,7 @@ TEST(WorldIdentity, PartsOnAnotherGridAreRefused) {
                     grids));
 }
 
-// Over the small world stands a second sun: a look into it brings its radiance, a look beside it nothing.
+// Over the small world is a second sun: a ray into it has its radiance, a ray beside it none.
 TEST(WorldIdentity, ADiskInTheSkyIsSeenAndCheckedLikeASun) {
   const World small = smallWorld();
   const auto with = [&](double half_angle_rad, const SpectralGridPtr& grid) {
@@ -124,7 +124,7 @@ TEST(WorldIdentity, ADiskInTheSkyIsSeenAndCheckedLikeASun) {
     });
   };
   EXPECT_EQ(with(0.1, small.grid), "");  // the control
-  EXPECT_TRUE(names(with(0, small.grid), "a point in the sky"));
+  EXPECT_TRUE(names(with(0, small.grid), "the sun's disk in the sky"));
   EXPECT_TRUE(names(with(2, small.grid), "half angle"));
   EXPECT_TRUE(names(with(0.1, otherGrid()), "different grids"));
   World world = small;
@@ -160,7 +160,8 @@ TEST(WorldIdentity, ASunThatIsNotPhysicalIsRefused) {
     EXPECT_TRUE(names(bright(bad), "at 550 nm is not physical"));
 }
 
-// By hand: a sun of 2 at 60 degrees brings 1, and a sky of 0.3 everywhere brings 0.3 pi. At night nothing comes from the
+// By hand: a sun of 2 at 60 degrees contributes 1, and a sky of 0.3 everywhere 0.3 pi. At night
+// nothing comes from the
 // sun. The Rayleigh sky's own flux is an integral over depth, not over directions; the sky's table is good for 2e-6 (RayleighSky_test) and the rule of 32 points for 1e-6.
 TEST(WorldIdentity, WhatFallsOnTheGround) {
   World world = smallWorld();

@@ -105,9 +105,9 @@ TEST(WritersInvariant, ASecondRenderIntoOnePlaceIsRefused) {
     const Outcome second = place.render(flags);
     EXPECT_EQ(second.code, 2) << flags;
     EXPECT_EQ(lines(second.err), 1) << second.err;
-    EXPECT_NE(second.err.find("is held by another malus"), std::string::npos) << second.err;
+    EXPECT_NE(second.err.find("is in use by another malus"), std::string::npos) << second.err;
   }
-  EXPECT_EQ(place.render("--out b --part 0,0,8,8").code, 0);  // another part disturbs nobody
+  EXPECT_EQ(place.render("--out b --part 0,0,8,8").code, 0);  // another part disturbs no other
   ::kill(first.child, SIGTERM), ::kill(first.child, SIGCONT);
   const int status = first.end(0);
   ASSERT_TRUE(WIFEXITED(status));
@@ -191,7 +191,7 @@ TEST(WritersInvariant, OutputThatDoesNotArriveIsReportedByEveryCommand) {
   EXPECT_EQ(runIn(place.scratch.path, "sh -c \"" + program + "--version >/dev/null\"").code, 0);
 }
 
-// ---------------------------------------------------------------- what a resumed run trusts
+// ---------------------------------------------------------------- what a resumed run relies on
 
 TEST(WritersInvariant, ALostRecordNeverMixesTwoMeshes) {
   const Place place(160, 60);
@@ -206,7 +206,7 @@ TEST(WritersInvariant, ALostRecordNeverMixesTwoMeshes) {
     put(place.scratch / "bar.obj", "# mended\n" + mesh);
     const Outcome other = place.render("--out b --resume");
     EXPECT_EQ(other.code, 2) << other.err;
-    EXPECT_NE(other.err.find("belongs to another cube"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("belongs to a cube other than"), std::string::npos) << other.err;
     put(place.scratch / "bar.obj", mesh);
     ASSERT_EQ(place.render("--out b --resume").code, 0);
     EXPECT_EQ(place.file("a/s.img"), place.file("b/s.img"));
@@ -270,7 +270,7 @@ TEST(WritersInvariant, AFinishedFrameIsVerifiedBeforeItIsTrusted) {
     EXPECT_EQ(place.file("a/s.truth.img"), place.file("b/s.truth.img"));
     return outcome.err;
   };
-  const std::string there = "is there already", again = "the frame is made again";
+  const std::string there = "exists already", again = "the frame is rendered again";
   EXPECT_NE(resumedAfter([](const fs::path&) {}).find(there), std::string::npos);
   EXPECT_NE(resumedAfter([](const fs::path& b) { fs::remove(b / "s.S0.png"); }).find(there),
             std::string::npos);
@@ -296,7 +296,7 @@ TEST(WritersInvariant, LeftoversOfAKilledProgramAreRemoved) {
   EXPECT_FALSE(place.has(std::string("b/.") + dead + ".s.S0.png"));
   EXPECT_FALSE(place.has(std::string("b/s.run.json.") + dead + ".new"));
   EXPECT_TRUE(place.has(std::string("b/.") + dead + ".t.S0.png"));  // another scene's
-  EXPECT_TRUE(place.has("b/.1.s.S1.png"));                          // process 1 lives
+  EXPECT_TRUE(place.has("b/.1.s.S1.png"));                          // process 1 runs
 }
 
 TEST(WritersInvariant, ATruncatedTableOfOurOwnIsNoticed) {
@@ -319,7 +319,8 @@ TEST(WritersInvariant, ATruncatedTableOfOurOwnIsNoticed) {
   }
 }
 
-// ---------------------------------------------------------------- what the dry run knows
+// ---------------------------------------------------------------- the needs that the dry run
+// reports
 
 TEST(WritersInvariant, PlacesThatCannotBeWrittenAreRefusedByDryRunAndRun) {
   const Place place;

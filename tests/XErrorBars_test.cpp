@@ -8,7 +8,8 @@
 
 using namespace malus;
 
-// The limits stand in validation/claims.csv; the claim of the DoLP without correlations is the negative control of the one with them.
+// The limits are in validation/claims.csv; the claim of the DoLP without correlations is the
+// negative control of the one with them.
 TEST(XErrorBarsInvariant, WhatIsClaimedIsWhatIsObserved) {
   const Item item = ran("X.error");
   EXPECT_EQ(named(item, Verdict::reproduced),

@@ -42,7 +42,8 @@ TEST(XSamplingRegression, OrderOfTheSamplings) {
 }
 
 // Images of the sun help in a scene that they are not made for, and leave the bowl alone: its errors are those of other
-// seeds, of which 16 tell a standard deviation to a fifth in each pixel, and much better in the mean of all.
+// seeds, of which 16 give a standard deviation to a fifth in each pixel, and much better in the
+// mean of all.
 TEST(XSamplingRegression, ImagesHelpInScenesWithOtherMirrors) {
   auto values = valuesOf(measured());
   const auto ratio = [&](const std::string& scene, const std::string& of) {
@@ -72,7 +73,7 @@ TEST(XSamplingRegression, TheOldTracerIsWorseThanItsSuccessors) {
   }
 }
 
-// The same seed makes the same picture, so errors are equal to the last bit; time is not asked.
+// The same seed makes the same picture, so errors are equal to the last bit; time is not compared.
 TEST(XSamplingInvariant, MeasurementIsRepeatable) {
   const auto once = measureSamplings({.side = 8, .rays = {16}, .reference_rays = 32});
   const auto again =

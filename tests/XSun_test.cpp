@@ -9,7 +9,7 @@
 
 using namespace malus;
 
-// The criteria stand in validation/claims.csv.
+// The criteria are in validation/claims.csv.
 TEST(XSunInvariant, AllClaimsHoldAndThePicturesAreDrawn) {
   const Item item = ran("X.sun");
   const std::map<std::string, Verdict> expected{{"edge", Verdict::reproduced},

@@ -2,12 +2,13 @@
 """The woven book, looked at from outside: book_test.py [BOOK [HEADERS]]; default build/book and generated/malus.
 
 Each page must be valid HTML, fit a phone, a tablet and a desk without sideways scrolling, and leave the browser's
-console silent; its colours must be told apart in the light and in the dark; every public name of every header must
-stand in the index with a description; every item of the inventory must be reachable from the last part.
+console silent; its colours must be distinguishable in the light and the dark theme; every public name of every header
+must be in the index with a description; every item of the inventory must be reachable from the last part, and
+every test from a chapter.
 (Broken links and anchors, and what LaTeXML complains of, stop the weaving itself.)
 
-What judges the HTML is tidy: it knows which element may stand in which, as a mere parser does not, and reads the whole
-book in seconds. The negative controls at the end spoil one thing each.
+The HTML is checked by tidy, which verifies the nesting of elements, as a mere parser does not, and reads the whole book
+in seconds. The negative controls at the end spoil one thing each.
 """
 import csv
 import glob
@@ -27,9 +28,9 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BOOK = os.path.join(ROOT, "build", "book")
 HEADERS = os.path.join(ROOT, "generated", "malus")
 WIDTHS = (360, 800, 1400)
-LEAST_CONTRAST = 4.5  # of text on its ground, as WCAG 2 wants it at level AA
+LEAST_CONTRAST = 4.5  # of text on its ground, as WCAG 2 requires at level AA
 
-# What tidy 5.6 says of valid pages: it does not know two attributes that the standards have since, nor a drawing's own
+# Messages of tidy 5.6 about valid pages: it lacks two attributes of newer standards, and those of drawings
 # style and links; and empty elements that carry a meaning by their class are not errors.
 EXPLAINED = re.compile(r'<math> proprietary attribute "alttext"|<a> proprietary attribute "(aria-current|href)"'
                        r"|trimming empty <span>|moved <style> tag to <head>")
@@ -50,7 +51,7 @@ def read(path: str) -> str:
 
 
 def invalid(paths: list[str]) -> list[str]:
-    """What tidy finds wrong with pages."""
+    """The problems that tidy finds in pages."""
     done = subprocess.run(["tidy", "-quiet", "-errors", "--gnu-emacs", "yes", "--show-warnings", "yes", *paths],
                           capture_output=True, text=True)
     return [line for line in done.stderr.splitlines() if line.strip() and not EXPLAINED.search(line)]
@@ -115,8 +116,21 @@ def unmapped(chain: str, files: list[str]) -> list[str]:
     return [file for file in files if "-" in file and file not in boxes]
 
 
+def unshown(sources: dict[str, str], book: dict[str, str]) -> list[str]:
+    """Tests of GoogleTest without a place on the page of their file, or to which no chapter leads."""
+    linked = {link for name, text in book.items() if "-" in name for link in re.findall(r'<tr><td><a href="([^"#]*_test\.html#[^"]*)"', text)}
+    out = []
+    for path, text in sources.items():
+        page = os.path.basename(path).replace(".cpp", ".html")
+        places = set(re.findall(r' id="([^"]*)"', book.get(page, "")))
+        for suite, name in re.findall(r"^(?:TEST|TEST_F|RC_GTEST_PROP)\(\s*(\w+),\s*(\w+)", text, re.MULTILINE):
+            if f"{suite}.{name}" not in places or f"{page}#{suite}.{name}" not in linked:
+                out.append(f"{path}: {suite}.{name}")
+    return out
+
+
 class Pages(unittest.TestCase):
-    """What can be seen without a browser."""
+    """Tests without a browser."""
 
     def test_the_book_is_there(self) -> None:
         self.assertTrue(os.path.isfile(os.path.join(BOOK, "index.html")), f"no book in {BOOK}: make book")
@@ -150,6 +164,12 @@ class Pages(unittest.TestCase):
         self.assertGreater(len([file for file in files if "-" in file]), 80)
         self.assertEqual(unmapped(read(os.path.join(BOOK, "chain.html")), files), [])
 
+    def test_every_test_has_its_source_and_a_chapter_that_leads_there(self) -> None:
+        sources = {path: read(path) for path in glob.glob(os.path.join(ROOT, "tests", "*_test.cpp"))}
+        book = {os.path.basename(path): read(path) for path in pages()}
+        self.assertGreater(len(sources), 100)
+        self.assertEqual(unshown(sources, book), [])
+
     def test_every_item_of_the_inventory_is_reachable_from_the_last_part(self) -> None:
         """A row of its table leads to chapter and code, or owns that nothing is built yet."""
         with open(os.path.join(ROOT, "validation", "inventory.csv"), encoding="utf-8") as file:
@@ -160,7 +180,7 @@ class Pages(unittest.TestCase):
         self.assertEqual([item for item in items if not leads.get(item)], [])
 
 
-# what sticks out of the window and cannot be scrolled where it stands
+# elements that extend beyond the window and cannot be scrolled in place
 OVERFLOW = """(() => {
   const page = document.documentElement, width = page.clientWidth;
   if (page.scrollWidth <= width) return "";
@@ -184,7 +204,7 @@ class InABrowser(unittest.TestCase):
         cls.addClassCleanup(cls.browser.__exit__)
 
     def amiss(self, path: str) -> list[str]:
-        """What is wrong with a page, at any width."""
+        """The problems of a page, at any width."""
         self.browser.size(WIDTHS[0])
         self.browser.open("file://" + path)
         out = []
@@ -211,6 +231,11 @@ class InABrowser(unittest.TestCase):
             page, _, anchor = address.partition("#")
             self.assertIn(f'id="{anchor}"', read(os.path.join(BOOK, page)), address)
         self.assertEqual(self.found("qwertyuiop"), [])
+
+    def test_search_finds_tests_by_their_words_and_by_their_names(self) -> None:
+        place = "LayeredLight_test.html#LayeredLightInvariant.EnergyIsConserved"
+        for query in ("LayeredLightInvariant.EnergyIsConserved", "energy+is+conserved"):
+            self.assertIn(place, self.found(query))
 
     def test_search_knows_stems_spellings_symbols_and_messages(self) -> None:
         for one, other in (("polarised+light", "polarized+light"), ("roughness", "rough"), ("the+colour+of+metres", "color+meter")):
@@ -269,6 +294,16 @@ class NegativeControls(unittest.TestCase):
     def test_map(self) -> None:
         chain = '<a href="light-A.html#ch:A"><rect x="1"/></a> <a href="light-B.html#ch:B">B</a>'
         self.assertEqual(unmapped(chain, ["light-A.html", "light-B.html", "index.html"]), ["light-B.html"])
+
+    def test_tests(self) -> None:
+        sources = {"tests/A_test.cpp": "TEST(AIdentity, One) {\n}\nRC_GTEST_PROP(AIdentity, Two, ()) {\n}\n"}
+        source = '<span id="AIdentity.One"></span><span id="AIdentity.Two"></span>'
+        rows = '<tr><td><a href="A_test.html#AIdentity.One">One</a><tr><td><a href="A_test.html#AIdentity.Two">Two</a>'
+        self.assertEqual(unshown(sources, {"light-A.html": rows, "A_test.html": source}), [])
+        lost = ["tests/A_test.cpp: AIdentity.Two"]
+        self.assertEqual(unshown(sources, {"light-A.html": rows, "A_test.html": source.replace("Two", "Too")}), lost)
+        self.assertEqual(unshown(sources, {"light-A.html": rows.replace("Two", "Too"), "A_test.html": source}), lost)
+        self.assertEqual(len(unshown(sources, {"light-A.html": rows})), 2)
 
     @unittest.skipIf(lacks(shutil.which("ctags"), "universal-ctags"), lacks(shutil.which("ctags"), "universal-ctags"))
     def test_names(self) -> None:

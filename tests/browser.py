@@ -26,7 +26,7 @@ class Browser:
         to_browser, self.write = os.pipe()
         self.read, from_browser = os.pipe()
 
-        def pipes() -> None:  # the protocol wants descriptors 3 and 4
+        def pipes() -> None:  # the protocol needs descriptors 3 and 4
             first, second = os.dup(to_browser), os.dup(from_browser)
             os.dup2(first, 3)
             os.dup2(second, 4)
@@ -66,7 +66,7 @@ class Browser:
         return answer
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """The answer to a command; what happens meanwhile is kept in self.events."""
+        """The reply to a command; events that arrive meanwhile are kept in self.events."""
         self.last += 1
         command: dict[str, Any] = {"id": self.last, "method": method, "params": parameters}
         if self.session:
@@ -94,7 +94,7 @@ class Browser:
         return answer["result"].get("value")
 
     def complaints(self) -> list[str]:
-        """What the console said since the page was opened: errors, warnings and exceptions."""
+        """Messages of the console since the page was opened: errors, warnings and exceptions."""
         out = []
         for event in self.events:
             parameters = event.get("params", {})

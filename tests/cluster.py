@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """The recipes of examples/cluster on a real Slurm of this machine alone, and Open MPI: cluster.py MALUS SOURCE RECORD (as root).
 
-munged, slurmctld and three slurmds run in a directory of their own under /tmp, bound to the loopback, and are ended at
-the end. A film is rendered by one process; by array jobs, undisturbed, with one task killed, and with one node's files
+munged, slurmctld and three slurmds run in a separate directory under /tmp, bound to the loopback, and are ended at the
+end. A film is rendered by one process; by array jobs, undisturbed, with one task killed, and with one node's files
 lost; by mpirun with several numbers of ranks, with one of them killed (rank 0, too), and with ranks that have no scene; and by an MPI
 job of Slurm. Each time the bytes of all files but the record are compared. The last line says whether all are equal.
 """
@@ -49,7 +49,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def free_port() -> int:
-    """A port of the loopback that nobody listens at."""
+    """A free port of the loopback."""
     with socket.socket() as one:
         one.bind(("127.0.0.1", 0))
         return int(one.getsockname()[1])
@@ -95,7 +95,7 @@ class Cluster:
                 daemon.kill()
 
     def run(self, *command: str, **more: str) -> str:
-        """What a command of Slurm says; it may fail while the daemons come up."""
+        """The output of a command of Slurm; it may fail while the daemons start."""
         return subprocess.run(command, env=self.environment | more, cwd=self.home, text=True, check=False, timeout=PATIENCE_S,
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
 
@@ -141,7 +141,7 @@ def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) 
             sys.exit(f"{ranks} ranks: {done.stderr}")
         enter(f"mpirun, {ranks} ranks", f"ranks-{ranks}", 0)
 
-    for victim, words in ((2, "goes on from here"), (0, "--resume goes on")):  # rank 0 has said it before it dies
+    for victim, words in ((2, "continues from here"), (0, "continue with")):  # rank 0 has reported it before it dies
         out = f"died-{victim}"
         with subprocess.Popen([*MPIRUN, "-n", "3", "malus", "render", "film.json", "--out", out, "--threads", "1"], cwd=home,
                               text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
@@ -169,16 +169,16 @@ def ranks_alone(home: Path, enter: Callable[[str, str, int], None], tiles: int) 
     enter("2 of 3 ranks have no files", "sent", 0)
 
     for what, arguments, words in (
-            ("a part", ["--part", "1/2"], "--part = 1/2: is for processes that do not talk to each other"),
-            ("no scene", ["--seed", "x"], "--seed = x: is not made of whole numbers")):
+            ("a part", ["--part", "1/2"], "--part = 1/2: is for independent processes"),
+            ("no scene", ["--seed", "x"], "--seed = x: does not consist of whole numbers")):
         done = run("-n", "2", "malus", "render", "film.json", "--out", "none", *arguments)
         if done.returncode != 2 or done.stderr.count(words) != 1 or (home / "none").exists():
             sys.exit(f"{what}: {done.stderr}")
 
 
 def scaling(home: Path, scene: dict[str, Any], record: Path) -> None:
-    """Writes what so many ranks use for cheap tiles, in processor time, which other work on the machine changes little, and how
-    long they take for dear ones, by the clock: the machine must be idle."""
+    """Writes the processor time of so many ranks for cheap tiles, which other work on the machine changes little, and
+    the time on the clock for expensive ones: the machine must be idle."""
     small = scene | {"geometry": scene["geometry"][1:], "sensor": scene["sensor"] | {"width": 1024, "height": 1024},
                      "radiometry": {"sampling": "grid-rotated", "rays": [1], "seed": 1},
                      "platform": scene["platform"] | {"frames": 1}}
@@ -206,7 +206,8 @@ def scaling(home: Path, scene: dict[str, Any], record: Path) -> None:
     dear = small | {"geometry": scene["geometry"], "sensor": scene["sensor"],
                     "radiometry": {"sampling": "importance", "rays": [2500], "seed": 1}}
     (home / "dear.json").write_text(json.dumps(dear), encoding="utf-8")
-    lines = [f"# title: What ranks use for a picture of {tiles} cheap tiles, and how long they take for 256 dear ones, without their start",
+    lines = [f"# title: Processor time of ranks for a picture of {tiles} cheap tiles, "
+             "and their time on the clock for 256 expensive ones, without their start",
              f"# source: make cluster-test on an idle machine of {os.cpu_count()} processors, the least of {TIMES} runs each",
              f"# date: {time.strftime('%Y-%m-%d', time.gmtime())}",
              "ranks,processors,tiles,work_s,film_tile_s,dear_clock_s,dear_threads_s"]
@@ -256,7 +257,7 @@ def main() -> None:
 
     def mend(cluster: Cluster, out: str, complaint: str) -> str:
         """Makes the parts that a refused merge names, by the recipe; returns their list."""
-        found = re.search(rf"part ([\d,-]+) of {PARTS} is not there", complaint)
+        found = re.search(rf"part ([\d,-]+) of {PARTS} does not exist", complaint)
         if not found:
             sys.exit(f"no missing part is named: {complaint}")
         print(complaint.strip())

@@ -200,7 +200,7 @@ class Solutions(unittest.TestCase):
         self.quoted("Section77", q_bright / bright, 2)
         self.quoted("Section77", black, 4)
         self.quoted("Section77", bright, 4)
-        # the digits that the book promises: fourteen of two sums in another order
+        # the digits that the book guarantees: fourteen of two sums in another order
         self.assertAlmostEqual(q_bright / q_black, 1, delta=1e-14)
 
     def test_sun(self) -> None:

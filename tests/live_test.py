@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The live figures, used as a reader does (nw/live/LiveFigure.nw): live_test.py [BOOK [LIBRARY [MALUS]]].
+"""Use the live figures as a reader does (nw/live/LiveFigure.nw): live_test.py [BOOK [LIBRARY [MALUS]]].
 
 A headless Chromium opens the pages of the woven book, drags every slider by key and by value, and compares the numbers
 that the page shows with those of the same functions compiled for this machine (build/lib/libmalus_live.so) and, where
@@ -54,7 +54,7 @@ class Native:
         self.figures: list[dict[str, Any]] = json.loads(self.library.malusLiveFigures())
 
     def evaluate(self, name: str, values: list[float]) -> dict[str, Any]:
-        """The answer of a figure."""
+        """The result of a figure."""
         number = next(i for i, figure in enumerate(self.figures) if figure["name"] == name)
         answer: dict[str, Any] = json.loads(self.library.malusLiveEvaluate(number, (ctypes.c_double * len(values))(*values)))
         return answer
@@ -98,12 +98,12 @@ class LivePage(browser.Browser):
             time.sleep(0.02)
 
     def move(self, name: str, control: str = "", value: float = 0) -> dict[str, Any]:
-        """What a figure shows after a control was moved."""
+        """The numbers of a figure after a control was moved."""
         shown: dict[str, Any] = self.value(MOVE % json.dumps([name, control, value]))
         return shown
 
     def press(self, name: str, control: str, key: str) -> dict[str, Any]:
-        """What a figure shows after a key was pressed in a control."""
+        """The numbers of a figure after a key was pressed in a control."""
         self.value(f'document.getElementById("live-{name}-{control}").focus()')
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=KEYS[key])

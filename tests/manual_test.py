@@ -21,7 +21,7 @@ ZSH = "zsh/site-functions/_malus"
 
 
 def said(*words: str) -> str:
-    """What a command prints."""
+    """The output of a command."""
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout
 
 
@@ -31,7 +31,7 @@ def made(name: str) -> str:
 
 
 def bash_completes(*words: str) -> set[str]:
-    """What bash offers for the last of these words."""
+    """The completions that bash offers for the last of these words."""
     line = " ".join(f"'{word}'" for word in words)
     script = (f"compopt() {{ :; }}; source {pathlib.Path(ROOT) / BASH}; COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _malus; "
               "printf '%s\\n' \"${COMPREPLY[@]}\"")

@@ -7,7 +7,7 @@ BUILD is a finished build with tests. A fault is one change of one token in the 
 chapter of the floors from base to render: an operator (+ for -, * for /, += for -=), a comparison
 (< for <=, == for !=, && for ||), a constant (a whole number plus one, a fraction 1 % larger) or a
 sign. Each chapter has its share of the faults by its number of code lines; which ones they are
-depends on the seed and the chapter's own code alone. A fault that is no C++ is replaced by another.
+depends on the seed and the chapter's own code alone. A fault that is not valid C++ is replaced by another.
 
 Where C++ allows it, all faults of a chapter are compiled together, each beside the right code, and
 an environment variable chooses one (see Trial); the others are compiled one by one. The objects are
@@ -105,7 +105,7 @@ def changed_number(text: str) -> str:
     return f"{value * 1.01:.17g}{suffix}" if value else f"0.01{suffix}"
 
 
-# How tightly C++ binds; what stands between two operands with spaces on both sides, as clang-format writes it
+# How tightly C++ binds; the text between two operands with spaces on both sides, as clang-format writes it
 BINDING = {"*": 5, "/": 5, "%": 5, "+": 6, "-": 6, "<<": 7, ">>": 7, "<=>": 8, "<": 9, "<=": 9, ">": 9, ">=": 9, "==": 10, "!=": 10,
            "&": 11, "^": 12, "|": 13, "&&": 14, "||": 15}
 CLOSERS = ")]}"
@@ -203,7 +203,7 @@ class Fault:
         return "\n".join(lines)
 
     def key(self) -> tuple[str, str, str]:
-        """What finds the fault again after lines have moved."""
+        """The key that finds the fault again after lines have moved."""
         return self.chapter, self.text, self.change
 
 
@@ -280,7 +280,7 @@ def switched(path: pathlib.Path, numbers: dict[int, Fault]) -> tuple[str, list[i
 
 
 def numbered(faults: list[Fault]) -> list[Fault]:
-    """Equal changes of a line, or of equal lines of a chapter, are told apart: the second one says that it is the second."""
+    """Equal changes of a line, or of equal lines of a chapter, are distinguished: the second one is marked as the second."""
     seen: dict[tuple[str, str, str], int] = {}
     for fault in faults:
         key = fault.key()
@@ -383,11 +383,11 @@ class Build:
         return ["-include", str(header)]
 
     def errors(self, source: pathlib.Path, text: str, include: list[str], out: pathlib.Path) -> str:
-        """What the compiler says against this text in the place of a source file; nothing if it is C++."""
+        """The compiler's messages for this text instead of a source file; nothing if it is C++."""
         line = self.lines[str(source)]
         file = out.with_suffix(".cpp")
         file.write_text(text)
-        # -iquote: a test's own headers stand beside it
+        # -iquote: a test's own headers are beside it
         words = line[:1] + self.precompiled + include + line[1:] + ["-iquote", str(source.parent), "-c", str(file), "-o", str(out)]
         done = subprocess.run(words, cwd=self.directory, capture_output=True, text=True, errors="replace")
         return done.stderr or "unknown error" if done.returncode else ""
@@ -466,9 +466,9 @@ def passes(program: pathlib.Path, scratch: pathlib.Path, limit: int, fault: int)
 class Trial:
     """The faults of one chapter and the tests that should notice them.
 
-    Most faults are compiled together: each changed expression stands beside the right one, behind a
-    question that an environment variable answers. What C++ wants to know while it compiles cannot
-    be asked that way; such faults are compiled alone."""
+    Most faults are compiled together: each changed expression is beside the right one, and an environment variable
+    selects one of them. Constants that C++ needs while it compiles cannot be selected that way; such faults are
+    compiled alone."""
 
     def __init__(self, build: Build, chapter: str, tests: list[pathlib.Path]) -> None:
         self.build, self.chapter, self.tests = build, chapter, tests
@@ -530,7 +530,7 @@ class Trial:
                     break
                 if not numbers:
                     sys.exit(f"{failing} fails without any fault; build and repair it first")
-                wrong = set(numbers)  # a macro that makes a text of its code tells the questions
+                wrong = set(numbers)  # a macro that turns its code into a text shows the selections
             numbers = {number: fault for number, fault in numbers.items() if number not in wrong}
         self.together = {fault: number for number, fault in numbers.items()}
 
@@ -565,7 +565,8 @@ class Trial:
 
 
 def shares(weights: dict[str, int], count: int) -> dict[str, int]:
-    """Whole numbers in proportion to the weights, at least one each but for nothing; the largest remainders get what is left."""
+    """Whole numbers in proportion to the weights, at least one each, except for a weight of zero; the largest
+    remainders get what is left."""
     total = sum(weights.values())
     exact = {name: count * weight / total for name, weight in weights.items()}
     share = {name: max(1, int(x)) if x else 0 for name, x in exact.items()}
@@ -622,7 +623,7 @@ class Report:
     def head(self, file: TextIO) -> None:
         described = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
         commit = described.stdout.strip() or "unknown"
-        file.write(f"# title: Faults planted in the chapters and what their tests noticed\n# date: {datetime.date.today()}\n"
+        file.write(f"# title: Faults planted in the chapters, and the outcome of their tests\n# date: {datetime.date.today()}\n"
                    f"# commit: {commit}\n# seed: {self.seed}\n")
         csv.writer(file, lineterminator="\n").writerow(self.COLUMNS)
 
@@ -637,7 +638,7 @@ class Report:
 
 def tried(trial: Trial, wanted: int, pool: list[Fault], report: Report, excused: dict[tuple[str, str, str], str],
           again: bool) -> list[Fault]:
-    """Try faults of the pool until the wanted number counts; those that have an outcome already are taken as they are."""
+    """Try faults of the pool until the required number counts; those that have an outcome already are taken as they are."""
 
     def open_question(fault: Fault) -> bool:
         if fault.key() in excused:

@@ -128,13 +128,13 @@ def races(place: str) -> None:
         record = json.loads(text_of(os.path.join(place, "b", f"s.{frame}.run.json")))
         for cube, checksum in record["cubes"].items():
             data = open(os.path.join(place, "b", cube), "rb").read()
-            demand(f"{zlib.crc32(data):08x}" == checksum, f"{cube} is not what its record says")
+            demand(f"{zlib.crc32(data):08x}" == checksum, f"{cube} differs from its record")
             if record["seed"] == 5:
                 demand(data == reference[cube], f"{cube} has other bits after a race")
 
 
 def frames_race(place: str) -> None:
-    """Two frames by two programs at once are no race."""
+    """Two frames by two programs at once do not conflict."""
     two = [start(place, "--out", "b", "--frames", frame, "--threads", "1") for frame in "01"]
     for process in two:
         _, err = process.communicate(timeout=300)
@@ -202,7 +202,7 @@ def full(place: str) -> None:
 
 
 def disk(place: str) -> str | None:
-    """A small disk in a file of memory, if the system lets us mount one in a namespace of our own."""
+    """A small disk in a file of memory, if the system allows mounting one in a separate namespace."""
     size = dice.randrange(20, 200) * 4096
     fill = f"(sleep {dice.random() * duration:.3f}; cat /dev/zero >b/fill) 2>/dev/null & " if dice.random() < .5 else ""
     if fill:
@@ -221,7 +221,7 @@ def disk(place: str) -> str | None:
 
 
 def read_only(place: str) -> str | None:
-    """A directory that nobody can write into is refused by the dry run as by the run, in words that name the cause."""
+    """A directory that is not writable is refused by the dry run as by the run, with the cause."""
     os.mkdir(os.path.join(place, "b"))
     script = f"mount -t tmpfs -o ro none b || exit 99; '{program}' render s.json --out b {dice.choice(['', '--dry-run', '--resume'])}"
     done = subprocess.run(["unshare", "-rm", "sh", "-c", script], cwd=place, capture_output=True, text=True)

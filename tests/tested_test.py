@@ -27,7 +27,7 @@ TEST(firstIdentity, AnyRootIsSmithsRoot) {
 TEST(firstPublished, TheSquare) {
   EXPECT_NE(Reflect(2), 5) << "negative control";
 }
-RC_GTEST_PROP(firstInvariant, NegativeControlAnotherSquare, ()) {
+RC_GTEST_PROP(firstInvariant, NegativeControlAnotherSquare, ()) {  // negative control
 }
 """
 
@@ -125,6 +125,12 @@ class TestedBook(weave_test.Workshop):
                                ("TorranceAndSparrowsMirrorsRoots", "Torrance and Sparrow's mirror's roots"), ("Section71", "Section 71"),
                                ("NegativeControlABRDF", "A BRDF"), ("test_brdf_of_a_root", "BRDF of a root")):
             self.assertEqual(words(name), expected)
+
+    def test_the_sentence_above_a_test(self) -> None:
+        for comment, expected in (("negative control", ""), ("bands.", ""), ("claim C3", "Claim C3."), ("f E cos. Half", "f E cos."),
+                                  ("1e-6: rounding. More.", "1e-6: rounding."), ("Is it so? It is.", "Is it so?"),
+                                  ("The other has the opposite U. One, i.e. alone", "The other has the opposite U.")):
+            self.assertEqual(tested.first_sentence(comment), expected)
 
     def fails(self, *fragments: str) -> None:
         code, complaint = self.weave()

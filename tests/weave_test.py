@@ -2,7 +2,7 @@
 """The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see; and
 the page of a report (nw/thesis/Report.nw).
 
-Identity: what must stand on the pages. Negative controls: each fault is put in alone, and the weaver must stop with
+Identity: contents that the pages must have. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
 """
 import fcntl
@@ -167,7 +167,7 @@ class Workshop(unittest.TestCase):
 
 
 class WovenBook(Workshop):
-    """What a reader must find."""
+    """Contents that a reader must find."""
 
     def setUp(self) -> None:
         super().setUp()
@@ -285,7 +285,7 @@ class WovenBook(Workshop):
         self.assertIn("Edit this chapter: <code>nw/light/first.nw</code>", self.first)
 
     def test_needs_no_script_and_no_network(self) -> None:
-        """Only the search has scripts, in files of its own."""
+        """Only the search has scripts, in separate files."""
         names = [name for name in os.listdir(os.path.join(self.dir, "book")) if name.endswith(".html")]
         pages = "".join(map(self.get, names))
         self.assertEqual([name for name in names if "<script" in self.get(name)], ["search.html"])
@@ -422,7 +422,7 @@ class SpoiledBook(Workshop):
 
 
 class Site(Workshop):
-    """What make site collects, and what the archive of make dist has."""
+    """The files of make site, and those of the archive of make dist."""
 
     REPORT = '<!DOCTYPE html><html lang="en"><head><title>r</title></head><body><h1>r</h1><img src="F3.9/fresnel.svg" alt="a"></body></html>'
 
@@ -456,7 +456,7 @@ class Site(Workshop):
 
 
 class Search(unittest.TestCase):
-    """What the search can find."""
+    """Results of the search."""
 
     BODY = """<section class="ltx_chapter" id="ch"><h1>Rough metal</h1><p>Many small facets.</p>
 <section class="ltx_section" id="one"><h2>Slopes</h2><p>The angle <math alttext="\\sigma_{i}"><mi>s</mi></math> counts.</p>
@@ -549,7 +549,7 @@ class PrintedBook(Workshop):
         with open(os.path.join(self.theme, "book.ini"), "w", encoding="utf-8") as file:
             file.write(CONTENTS)
         self.assertEqual(code, 1)
-        self.assertRegex(complaint, "volume 1 has \\d+ pages, at most 2 are wanted")
+        self.assertRegex(complaint, "volume 1 has \\d+ pages, but at most 2 are allowed")
 
     def test_line_that_sticks_out(self) -> None:
         self.fails("it is zero.", r"it is zero. \rule{20cm}{1pt}", "nw/light/first.nw:", "Overfull")
@@ -562,7 +562,7 @@ class PrintedBook(Workshop):
 
 
 class Errata(unittest.TestCase):
-    """The table of errata: what the report has and what the chapter tells must be the same."""
+    """The table of errata: the report and the chapter must have the same entries."""
 
     CLAIM = {"name": "a", "printed": "1", "ours": "2.0", "cause": "should read 2", "verdict": "erratum"}
     ROW = r"\erratum{eq.~1}{$x_{1}$}{$x_{2}$}{index}{N8/a}"
@@ -582,8 +582,8 @@ class Errata(unittest.TestCase):
 
     def test_negative_controls(self) -> None:
         for rows, verdict, complaint in (((), "erratum", "the report has the erratum N8/a"),
-                                         ((self.ROW,), "differs", "errata.nw:2: N8/a is no erratum"),
-                                         ((self.ROW, self.ROW.replace("N8/a", "N8/b")), "erratum", "errata.nw:3: N8/b is no erratum"),
+                                         ((self.ROW,), "differs", "errata.nw:2: N8/a is not an erratum"),
+                                         ((self.ROW, self.ROW.replace("N8/a", "N8/b")), "erratum", "errata.nw:3: N8/b is not an erratum"),
                                          ((self.ROW, r"\erratum{a}{b}{N8/a}"), "erratum", "five arguments")):
             with self.subTest(complaint), self.assertRaisesRegex(problems.Problems, complaint):
                 self.table(*rows, verdict=verdict)
@@ -611,12 +611,12 @@ class Claims(unittest.TestCase):
         self.assertNotIn("it falls", self.table(r"\claims{F1}", repeats="F2/a"))
 
     def test_negative_control_an_item_that_is_not_there(self) -> None:
-        with self.assertRaisesRegex(problems.Problems, "no item of the report"):
+        with self.assertRaisesRegex(problems.Problems, "is not an item of the report"):
             self.table(r"\claims{F2}")
 
 
 class Tangled(unittest.TestCase):
-    """What is written into generated/, and what is left alone there so that nothing is compiled for nothing."""
+    """The files written into generated/, and those left unchanged there so that nothing is compiled needlessly."""
 
     CHAPTER = """Why.
 <<light/Use.hpp>>=
@@ -863,7 +863,7 @@ class CheckTest(unittest.TestCase):
     """Rules that one chapter alone cannot see: floors, circles, names; lengths over the chunks that they consist of."""
 
     def said_of_chapters(self, chapters: dict[str, str]) -> list[str]:
-        """What the check says of chapters by floor and name, each with the code of one header."""
+        """The messages of the check for chapters by floor and name, each with the code of one header."""
         with tempfile.TemporaryDirectory() as directory:
             for name, code in chapters.items():
                 path = os.path.join(directory, "nw", name + ".nw")
@@ -881,7 +881,7 @@ class CheckTest(unittest.TestCase):
         self.assertEqual(self.said_of_chapters(falls), [])
         climbs = {"base/Low": includes.format("light/High"), "light/High": "struct High {};\n"}
         self.assertEqual(self.said_of_chapters(climbs), ["nw/base/Low.nw:5: base must not include light: an include never climbs"])
-        # python stands on files, beside app
+        # python uses files, and is beside app
         self.assertEqual(self.said_of_chapters({"python/Me": includes.format("files/Cube"), "files/Cube": ""}), [])
         self.assertEqual(self.said_of_chapters({"python/Me": includes.format("app/Main"), "app/Main": ""}),
                          ["nw/python/Me.nw:5: python must not include app: an include never climbs"])
@@ -897,10 +897,10 @@ class CheckTest(unittest.TestCase):
     def test_cd_is_for_the_thesis(self) -> None:
         self.assertEqual(self.said_of_chapters({"base/Vector": "struct CDVector {};\n"}), [])
         self.assertEqual(self.said_of_chapters({"base/Vector": "struct Vector {\n  CDNew n;\n};\n"}),
-                         ["nw/base/Vector.nw:5: CDNew is no name of the thesis; leave out the CD"])
+                         ["nw/base/Vector.nw:5: CDNew is not a name of the thesis; leave out the CD"])
 
     def said_of(self, lines_of_a_function: int, functions: int) -> str:
-        """What the check says of a chapter with so many functions, the middle of each in a chunk of its own."""
+        """The messages of the check for a chapter with so many functions, the middle of each in a separate chunk."""
         body = "  ++n;\n" * (lines_of_a_function - 3)
         chapter = "".join(f"<<Middle {i}>>=\n{body}@\n" for i in range(functions)) + "<<base/Long.cpp>>=\n"
         chapter += "".join(f"int count{i}(\n    int n) {{\n  // no code\n\n  <<Middle {i}>>\n}}\n" for i in range(functions))

@@ -36,7 +36,7 @@ def zsh(text: str) -> str:
 
 
 def described(program: str) -> dict[str, Any]:
-    """What a program says of its commands."""
+    """The description that a program prints of its commands."""
     said: dict[str, Any] = json.loads(subprocess.run([program, "--describe"], check=True, capture_output=True, text=True).stdout)
     return said
 

@@ -1,6 +1,6 @@
-"""What a book is before it is rendered: its pages in parts, what they refer to, and its chunks.
+"""A book before it is rendered: its pages in parts, their references, and its chunks.
 
-Two renderers stand on this: weave.py makes the HTML, pdf.py the PDF.
+Two renderers use this: weave.py makes the HTML, pdf.py the PDF.
 """
 import argparse
 import os
@@ -50,7 +50,7 @@ def line_of(text: str, place: int) -> int:
 
 
 def without_comments(latex: str) -> str:
-    """The same text, same length, comments blanked, so that what stands in them is not looked for."""
+    """The same text, same length, comments blanked, so that their contents are not searched."""
     return re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match[0]), latex)
 
 
@@ -108,7 +108,7 @@ class Links:
         return text if DRAWN_LINK.search(text) else ""
 
     def check(self, pages: list[Page]) -> None:
-        """Everything the prose refers to exists; all that does not is told at once."""
+        """Everything the prose refers to exists; all missing targets are reported at once."""
         problems: list[Problem] = []
         defined: dict[str, str] = {}
         for page in pages:
@@ -122,7 +122,7 @@ class Links:
         stop_if_any(problems)
 
     def check_page(self, page: Page, defined: Container[str]) -> list[Problem]:
-        """What one page refers to; notes who cites what, and which figures are shown."""
+        """The references of one page; notes the citations, and the figures that are shown."""
         problems: list[Problem] = []
         text = without_comments(page.latex)
 
@@ -196,7 +196,7 @@ class Book:
         self.back: list[Page] = []
 
     def gather(self) -> None:
-        """A page for each chapter. What is numbered as a chapter says \\chapter, the rest \\chapter*."""
+        """A page for each chapter. A numbered heading is \\chapter, the others are \\chapter*."""
         defined = {word for chapter in self.chapters for chunk in chapter.chunks for word, _ in chunk.defines}
         stop_if_any(names.check(self.names, defined))
         parts: dict[str, Part] = {}
@@ -246,7 +246,7 @@ class Book:
         return rf"\begin{{enumerate}}{''.join(items)}\end{{enumerate}}" if items else ""
 
     def chapter_link(self, label: str, page: Page) -> str:  # pylint: disable=unused-argument
-        """A link to a chapter that stands alone."""
+        """A link to a chapter outside of a sentence."""
         return rf"Chapter~\ref{{{label}}}"
 
     def name_chunks(self, chapter: noweb.Chapter, page: Page) -> None:

@@ -45,7 +45,7 @@ def floors_and_names(chapter: str, problems: list[str], homes: dict[str, str], l
                     problems.append(f"{where}: {floor} must not include {include[1]}: an include never climbs")
                 leads.setdefault(me, set()).add(f"{include[1]}/{include[2]}")
             if code:
-                problems.extend(f"{where}: {name} is no name of the thesis; leave out the CD"
+                problems.extend(f"{where}: {name} is not a name of the thesis; leave out the CD"
                                 for name in OURS.findall(line) if name not in THESIS)
 
 

@@ -18,7 +18,7 @@ class Part:
         self.name, self.title, self.about = name, section["title"], section["about"]
         self.volume = section.getint("volume")
         self.code = section.get("code", "whole")  # on paper: whole, or only the interface
-        self.sentences: dict[str, str] = {}  # chapter -> what it is about, "" if its own first sentence says it
+        self.sentences: dict[str, str] = {}  # chapter -> a sentence about it, "" if its own first sentence is one
         for line in section.get("chapters", "").split("\n"):
             if chapter := line.strip():
                 key, _, sentence = chapter.partition(" ")
@@ -69,7 +69,7 @@ class Contents:
         return self.floors[floor]
 
     def sentence(self, chapter: str) -> str:
-        """What a chapter is about, where its own first sentence does not say it."""
+        """The sentence about a chapter, if its own first sentence does not describe it."""
         part = self.homes.get(chapter)
         return part.sentences[chapter] if part else ""
 

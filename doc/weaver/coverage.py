@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Which lines of nw/ did the tests reach?
+"""List the lines of nw/ that the tests reach.
 
     coverage.py BUILD
 
 Reads what a coverage build (make coverage) left in BUILD, and prints for every chapter
-the share of its code lines that were executed and the line numbers that were not. The line directives of
-the tangled code make gcov speak of chapters.
+the share of its code lines that were executed and the line numbers that were not. By the line directives of the tangled
+code gcov refers to chapters.
 """
 import collections
 import json

@@ -33,7 +33,7 @@ DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 
 
 class Section:
-    """What is read in one section: its pieces of text, and those of its heading."""
+    """The text of one section: its pieces, and those of its heading."""
 
     def __init__(self, anchor: str, title: str = "") -> None:
         self.anchor, self.title = anchor, title
@@ -80,7 +80,7 @@ def read_aloud(element: Any) -> Iterator[str]:
 
 
 def text_of(html: str) -> str:
-    """What is read aloud of a piece of HTML."""
+    """The readable text of a piece of HTML."""
     return in_one_line("".join(read_aloud(lxml.html.fragment_fromstring(html, create_parent="div"))))
 
 

@@ -3,9 +3,9 @@
 
     format.py [--check] CHAPTER.nw...
 
-clang-format must see whole files, but the code lives in chunks. So each root is
-tangled here with the origin of every character remembered, clang-format is
-asked what white space it would replace, and the replacements are carried back
+clang-format needs whole files, but the code is in chunks. So each root is
+tangled here with the origin of every character remembered, clang-format reports the white space that it would replace,
+and the replacements are carried back
 to the chunk they came from. White space where two chunks meet belongs to no
 chunk and stays as it is. --check changes nothing and fails if it would.
 """
@@ -23,7 +23,7 @@ USE = re.compile(r"(?<!@)<<((?:(?!<<|>>).)+)>>")
 
 
 class Char:
-    """One tangled character: what it is, where in the chapter it stands, in which chunk, indented how far."""
+    """One tangled character: the character, its place in the chapter, its chunk, and its indentation."""
     __slots__ = ("text", "origin", "chunk", "indent")
 
     def __init__(self, text: str, origin: int | None, chunk: str | None, indent: int) -> None:
@@ -131,7 +131,7 @@ def main() -> None:
             with open(chapter, "w", encoding="utf-8") as file:
                 file.write(text)
     for chapter in dict.fromkeys(changed):
-        print(f"{chapter}: {'wants formatting: type make format' if check else 'formatted'}")
+        print(f"{chapter}: {'needs formatting: type make format' if check else 'formatted'}")
     sys.exit(check and bool(changed))
 
 

@@ -3,8 +3,8 @@
 LaTeXML works in two steps, and latexml.pl runs each of them for many chapters
 at once. The first turns LaTeX into XML; there we give every thing that can be
 referred to its address and resolve all references, since only we see the
-whole book. The second step turns that XML into HTML. What a step made is kept
-beside a digest of what it was made from, and made again only if that changed.
+whole book. The second step turns that XML into HTML. The result of a step is kept with a digest of its input, and made
+again only if the input changed.
 
 An earlier version also replaced LaTeXML's parser of formulas, by one that
 visits each place of a formula only once. It saved a quarter of the first step
@@ -55,7 +55,7 @@ def ours(name: str) -> str:
 
 
 def slug(text: str) -> str:
-    """Words joined by hyphens, as they may stand in an address."""
+    """Words joined by hyphens, as allowed in an address."""
     return "-".join(re.findall(r"[a-z0-9]+", text.lower())) or "section"
 
 
@@ -76,7 +76,7 @@ def write(path: str, text: str) -> None:
 class Job:
     """One file for LaTeXML: which page it is of, all that the result depends on, and where things lie.
 
-    The text it is made from is asked for only when it has to be made.
+    Its source text is computed only when it has to be made.
     """
 
     def __init__(self, page: "Page", depends: str, text: Callable[[], str], path: str, before: str, after: str) -> None:
@@ -108,7 +108,7 @@ class Job:
 
 
 class Converter:
-    """Runs LaTeXML in a directory of its own."""
+    """Runs LaTeXML in a separate directory."""
 
     def __init__(self, work: str, theme: str) -> None:
         os.makedirs(work, exist_ok=True)
@@ -119,7 +119,7 @@ class Converter:
                 self.context += file.read()
 
     def run(self, step: str, jobs: list[Job]) -> Iterator[Job]:
-        """Yields each job when it is made: at once those that need no more be made, while LaTeXML works on the others.
+        """Yields each job when it is made: at once those that are already made, while LaTeXML works on the others.
 
         Those begin with the longest, so that none is waited for at the end.
         """

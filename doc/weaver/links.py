@@ -4,7 +4,7 @@
     links.py DIR
 
 Reads all pages in DIR and below. It fails on a link to a page or a place that does not
-exist, a picture or font that is not there, a name given to two places of a
+exist, a missing picture or font, a name given to two places of a
 page, a picture without words, anything loaded from elsewhere (links one may
 follow are allowed), scripts other than those of the search and of the live
 figures, and what LaTeXML or the weaver leave behind when they could not do
@@ -27,7 +27,7 @@ PARSER = lxml.html.HTMLParser(encoding="utf-8")
 
 
 class Page:
-    """What one page defines and what it needs: (line, kind, address)."""
+    """The names that one page defines and the addresses that it needs: (line, kind, address)."""
 
     def __init__(self, path: str, name: str) -> None:
         self.path, self.name = path, name  # from here, and from the folder
@@ -69,7 +69,7 @@ class Page:
 
 
 def check_need(files: set[str], pages: dict[str, Page], page: Page, kind: str, address: str) -> str:
-    """What is wrong with an address, or nothing."""
+    """The problem of an address, or nothing."""
     parts = urllib.parse.urlsplit(address)
     if parts.scheme or parts.netloc:
         return "is loaded from elsewhere" if kind == "load" else ""

@@ -81,7 +81,7 @@ def name_html(name: str) -> str:
 
 
 class Listing:
-    """What stands in and below the chunks of a book. A renderer says how a link, a word or a colour is written."""
+    """The text in and below the chunks of a book. A renderer says how a link, a word or a colour is written."""
 
     def __init__(self, chapters: list[noweb.Chapter], names: Sequence[Name] = ()) -> None:
         self.names = names  # public names of the program's headers (names.py)
@@ -180,12 +180,12 @@ class Listing:
         return None
 
     def about(self, word: str, labels: Iterable[str]) -> str:
-        """What an identifier is: the first sentence of the comment at its declaration."""
+        """The description of an identifier: the first sentence of the comment at its declaration."""
         comments = (comment_on(word, self.by_label[label].text.split("\n")) for label in self.ordered(labels))
         return next((comment for comment in comments if comment), "")
 
     def place_of(self, labels: Iterable[str]) -> str:
-        """What an identifier without a comment is: a part of what its chunk is about."""
+        """The description of an identifier without a comment: it is a part of its chunk."""
         chunk = self.by_label[self.ordered(labels)[0]]
         return noweb.plain(chunk.name)
 

@@ -1,8 +1,8 @@
 """The public names of the program, read from its headers by Universal Ctags.
 
 A header is tangled with #line directives, so a name is known by the line of
-the chapter that declares it. What stands directly in the program's namespace
-must be defined in the index by its author (`@ %def`), since only then do all
+the chapter that declares it. Each name directly in the program's namespace must be defined in the index by its author
+(`@ %def`), since only then do all
 uses link to it. Members, enumerators and operators carry names that many
 classes share; a link from each `size` to one of them would mislead. They are
 indexed here, by their full names: `Table::rows`.
@@ -23,13 +23,13 @@ LINE = re.compile(r'#line (\d+) "([^"]+)"')
 
 
 class Name:
-    """One declaration: its full name without the namespace, and where it stands."""
+    """One declaration: its full name without the namespace, and its place."""
 
     def __init__(self, full: str, word: str, kind: str, path: str, line: int) -> None:
         self.full, self.word, self.kind, self.path, self.line = full, word, kind, path, line
 
     def needs_def(self) -> bool:
-        """Whether the author must define it: all that a user of the namespace may write, but for operators."""
+        """Whether the author must define it: every name that a user of the namespace may write, except operators."""
         return "::" not in self.full and not self.word.startswith("operator")
 
 
@@ -43,7 +43,7 @@ def places(path: str) -> list[Place]:
 
 
 def places_of_code(path: str) -> list[Place]:
-    """The same for the lines that are no directives."""
+    """The same for the lines that are not directives."""
     origin: Place = ("", 0)
     out = []
     with open(path, encoding="utf-8") as lines:
@@ -57,7 +57,7 @@ def places_of_code(path: str) -> list[Place]:
 
 
 def is_public(tag: dict[str, Any]) -> bool:
-    """What a user may name; neither constructors, which the class stands for, nor what is called a detail."""
+    """The names that a user may write, without constructors, which the class represents, and without details."""
     scope, name = tag.get("scope", ""), tag["name"]
     if not scope.startswith(NAMESPACE) or "detail" in scope or "__anon" in scope + name:
         return False

@@ -12,7 +12,7 @@ import subprocess
 
 LIB = "/usr/lib/noweb"  # where Debian keeps the filters; noweave itself has this path built in
 
-USE = "\x01{}\x02"  # stands in a chunk's text where another chunk is used: its place in chunk.used_chunks
+USE = "\x01{}\x02"  # marks the use of another chunk in a chunk's text: its place in chunk.used_chunks
 
 
 class Chunk:
@@ -26,7 +26,7 @@ class Chunk:
         self.links: dict[str, str] = {}  # identifier -> label of the chunk that defines it
         self.defines: list[tuple[str, list[str]]] = []  # (identifier, labels of the chunks that use it)
         self.number = 0        # in the order of the book, from 1
-        self.line = 0          # of its chapter, where its first line of code stands
+        self.line = 0          # of its chapter, with its first line of code
         self.pieces: list[Chunk] = []  # all chunks of this name, in order
 
 

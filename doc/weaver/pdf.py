@@ -8,8 +8,8 @@ the other from what LaTeX wrote of that (far-1.tex, far-2.tex).
 
 The second renderer of the weaver: book.py reads the chapters and checks what
 they refer to, listing.py writes their chunks as LaTeX, and doc/book/malus.sty
-says how all of it looks. The chapters keep their lines, so a complaint of
-LaTeX is told with the line of the chapter. The pages must be good as well: a
+says how all of it looks. The chapters keep their lines, so a message of LaTeX is reported with the line of the chapter.
+The pages must be good as well: a
 line that sticks out by more than 2 pt, a reference to nothing or a character
 that the fonts lack stops the book.
 """
@@ -126,7 +126,7 @@ class PdfBook(book.Book):
                     self.printed[chunk.label] = page.volume
 
     def without_far_links(self, latex: str, volume: int) -> str:
-        """What a page refers to in the other volume, by number; line for line."""
+        """The references of a page to the other volume, by number; line for line."""
         def far(label: str) -> bool:
             return self.homes.get(label, volume) != volume
 
@@ -272,10 +272,11 @@ class PdfBook(book.Book):
                 pages = self.pages_of(volume.number)
                 print(f"volume {volume.number}: {pages} pages" + (f" of at most {volume.most_pages}" if volume.most_pages else ""))
                 if 0 < volume.most_pages < pages:
-                    raise Problem(self.contents.path, 0, f"volume {volume.number} has {pages} pages, at most {volume.most_pages} are wanted")
+                    raise Problem(self.contents.path, 0, f"volume {volume.number} has {pages} pages, but at most
+                    {volume.most_pages} are allowed")
 
     def complain(self, errors_only: bool = False) -> None:
-        """What LuaLaTeX's log says is wrong, told with the chapter and the line."""
+        """The problems in LuaLaTeX's log, with the chapter and the line."""
         problems: list[Problem] = []
         source = ""
         sources = {page.name: page.source for page in self.pages()}

@@ -1,9 +1,9 @@
-"""What can be wrong with a book: a file, a line, and a sentence."""
+"""Problems of a book: a file, a line, and a sentence."""
 from collections.abc import Sequence
 
 
 class Problem(Exception):
-    """Something an author must mend; printed as compilers print, so that editors can jump to it."""
+    """A problem that the author must fix, printed in the format of compilers, so that editors can jump to it."""
 
     def __init__(self, path: str, line: int, sentence: str) -> None:
         super().__init__(f"{path}:{line}: {sentence}" if line else f"{path}: {sentence}")

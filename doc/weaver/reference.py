@@ -92,9 +92,9 @@ class Reference:
     def parameters(self, name: str) -> str:
         rows = []
         for parameter in self.described[name]["parameters"]:
-            unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
+            meaning = parameter["meaning"] + (f" [{parameter['unit']}]" if parameter["unit"] else "")
             default = "optional" if parameter["optional"] else parameter["default"] or "required"
-            rows.append(rf"{code(parameter['name'])} & {prose(parameter['meaning'] + unit)} & {prose(parameter['range'])} & {prose(default)} \\")
+            rows.append(rf"{code(parameter['name'])} & {prose(meaning)} & {prose(parameter['range'])} & {prose(default)} \\")
         return begin(code(name), ("meaning", .34), ("values", .24), ("default", .1)) + " ".join(rows) + END
 
     def keys(self, names: str) -> str:

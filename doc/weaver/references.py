@@ -52,7 +52,7 @@ def read(path: str) -> dict[str, Entry]:
         raise Problem(path, getattr(error, "lineno", None) or line_of(text, str(error).rsplit(" ", maxsplit=1)[-1]), str(error)) from None
     entries = {key: Entry(entry) for key, entry in found.items()}
     for key, entry in entries.items():
-        for name in NEEDED.get(entry.kind, ("an entry kind that references.py knows",)):
+        for name in NEEDED.get(entry.kind, ("an entry kind of references.py",)):
             if not entry.has(name):
                 raise Problem(path, line_of(text, key), f"{key} lacks {name}")
     return entries

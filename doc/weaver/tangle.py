@@ -4,9 +4,8 @@
     tangle.py [--plain | --exact] OUT CHAPTER.nw ROOT...
 
 Every ROOT is the name of a root chunk and, below OUT, of the file it becomes.
-The chapter must have exactly these roots: a root nobody asked for is a
-misspelt or forgotten chunk, and stops the build with its name, as does a chunk
-that is used but never defined. A file is rewritten only if its text changed,
+The chapter must have exactly these roots: an unexpected root is a misspelt or forgotten chunk, and stops the build with
+its name, as does a chunk that is used but never defined. A file is rewritten only if its text changed,
 so that make's clock sees real changes alone. --plain leaves out the line
 directives (for the source archive, clang-format and clang-tidy).
 
@@ -18,8 +17,8 @@ little off. The new text is written beside the header, X.hpp.lines, where the
 index of the book reads the lines. --exact does not pay (coverage counts lines).
 
 Several build directories may tangle into one OUT at the same time. Each file
-appears whole (it is renamed into place), and nobody overwrites a file with the
-tangled text of an older chapter: the files are written under a lock on OUT,
+appears whole (it is renamed into place), and no file is overwritten with the tangled text of an older chapter: the
+files are written under a lock on OUT,
 and only while the chapter is still the one that was tangled.
 """
 import contextlib
@@ -55,8 +54,8 @@ def check_roots(chapter: str, expected: list[str]) -> None:
     found, complaint = roots_of(chapter)
     problems = [complaint] if complaint else []
     problems += [
-        f"chunk <<{name}>> is used by no chunk and is no file that CMakeLists.txt lists for this"
-        " chapter; use it, list it, or mend its spelling"
+        f"chunk <<{name}>> is not used by a chunk and is not a file that CMakeLists.txt lists for this"
+        " chapter; use it, list it, or fix its spelling"
         for name in found if name not in expected
     ]
     problems += [

@@ -21,7 +21,7 @@ SUITE = re.compile(rf"(\w+?)({'|'.join(KINDS)})$")
 BEGINS = re.compile(r"^(?:TEST|TEST_F|RC_GTEST_PROP)\(\s*(\w+),\s*(\w+)", re.MULTILINE)
 ABOVE = re.compile(r"(?:^(?://|#)(?! ?----).*\n)+\Z", re.MULTILINE)  # the comment that ends where a test begins
 CONTROL = re.compile(r"negative[ _]?control|(?://|#).*\bcontrols?\b", re.IGNORECASE)
-IS_CONTROL = re.compile(r"NegativeControl(?=[A-Z])|test_negative_control_(?=[a-z])")
+TOLD = re.compile(r"NegativeControl(?=[A-Z])|test_negative_control_(?=[a-z])")  # what a name says that the kind says
 CHAPTER = re.compile(r"(\w+)\.nw\b")
 WORD = re.compile(r"NaNs?|[A-Z]\d+|[A-Z]{2,}s?(?![a-z])|[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 SENTENCE = re.compile(r"(?<=[^.][^.][.!?])\s+(?=[A-Z(\[])")
@@ -39,7 +39,7 @@ class Test:
         self.chapter = ""  # after which it is called
         self.sentence = first_sentence(above)
         self.control = ""  # what the table says besides the kind
-        if IS_CONTROL.match(name) or self.kind == "control":
+        if name.startswith(("NegativeControl", "test_negative_control")) or self.kind == "control":
             self.kind, self.control = self.kind.replace("control", ""), "negative control"
         elif CONTROL.search(above) or CONTROL.search(file.text[begin:end]):
             self.control = "with a control"
@@ -48,11 +48,6 @@ class Test:
     def address(self) -> str:
         """Of its source in the site."""
         return f"{self.file.page}#{self.full}"
-
-    @property
-    def line(self) -> int:
-        """Where it begins."""
-        return self.file.text.count("\n", 0, self.begin) + 1
 
 
 class TestFile:
@@ -124,10 +119,13 @@ def uncommented(comment: str) -> str:
 
 
 def first_sentence(text: str) -> str:
-    """The first sentence of a comment, closed by a full stop."""
-    text = " ".join(text.split())
-    sentence = SENTENCE.split(text)[0].rstrip(":;, ")
-    return sentence + "." if sentence and sentence[-1] not in ".!?" else sentence
+    """The first sentence of a comment, with a capital and a full stop; nothing of one word, or that only says what the kind says."""
+    sentence = SENTENCE.split(" ".join(text.split()))[0].rstrip(".:;, ")
+    if " " not in sentence or sentence.lower() == "negative control":
+        return ""
+    if re.match("[a-z]{2}", sentence):
+        sentence = sentence[0].upper() + sentence[1:]
+    return sentence if sentence[-1] in "!?" else sentence + "."
 
 
 class Wording:
@@ -161,7 +159,7 @@ class Wording:
 
     def words(self, test: Test) -> str:
         """A test's name as a line of words."""
-        parts = [word for part in WORD.findall(IS_CONTROL.sub("", test.name).removeprefix("test_")) for word in self.word(part)]
+        parts = [word for part in WORD.findall(TOLD.sub("", test.name).removeprefix("test_")) for word in self.word(part)]
         line = " ".join(parts)
         return line[:1].upper() + line[1:]
 

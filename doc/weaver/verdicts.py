@@ -4,8 +4,8 @@ A chapter writes one line for each misprint, between \begin{errata} and \end{err
 
     \erratum{place}{as printed}{as derived}{effect}{ITEM/claim ITEM/claim}
 
-The evidence is what `malus reproduce` computed for these claims. A claim that
-is no erratum stops the book, and so does an erratum of the report that has no
+The evidence is what `malus reproduce` computed for these claims. A claim that is not an erratum stops the book, and so
+does an erratum of the report that has no
 line. \inventory becomes the table of all items, each with its verdicts and a
 link to where it is computed. \claims{ID ID} alone on a line becomes the
 table of what these items claim: sentence, criterion and verdict.
@@ -30,7 +30,7 @@ ROUGH = r">{\raggedright\arraybackslash}p"  # a narrow column, its right edge as
 BEGIN_ERRATA = (r"{\litsmall\begin{longtable}{" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.12, .19, .19, .3, .13))
                 + r"}\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
 BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.28\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
-               + r"}\toprule item & what & place & r & e & d & n & told in \\ \midrule\endhead")
+               + r"}\toprule item & what & place & r & e & d & n & described in \\ \midrule\endhead")
 CLAIMS = re.compile(r"^\\claims\{([^}]*)\}$", re.MULTILINE)
 BEGIN_CLAIMS = (r"{\litsmall\begin{longtable}{l" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.36, .3, .14))
                 + r"}\toprule item & sentence & criterion & verdict \\ \midrule\endhead")
@@ -44,7 +44,7 @@ def plain(words: str) -> str:
 
 
 def arguments(line: str) -> list[str]:
-    """The arguments of a macro that stands alone on a line."""
+    """The arguments of a macro that is alone on a line."""
     out: list[str] = []
     depth = begin = 0
     for place, character in enumerate(line):
@@ -60,7 +60,7 @@ def arguments(line: str) -> list[str]:
 
 
 class Verdicts:
-    """What the report says, for the pages that ask for it."""
+    """The contents of the report, for the pages that refer to it."""
 
     def __init__(self, report: str, inventory: str | None = None) -> None:
         path = os.path.join(report, "report.json")
@@ -84,9 +84,9 @@ class Verdicts:
         page.latex = CLAIMS.sub(lambda match: self.table_of(page, match[1].split()), page.latex)
 
     def table_of(self, page: "Page", ids: list[str]) -> str:
-        """What these items claim, in their order; a row that repeats another is left out."""
+        """The claims of these items, in their order; a row that repeats another is left out."""
         rows, found = [], {item["id"]: item for item in self.items}
-        stop_if_any([Problem(page.source, 0, rf"\claims names {name}, which is no item of the report")
+        stop_if_any([Problem(page.source, 0, rf"\claims names {name}, which is not an item of the report")
                      for name in ids if name not in found])
         for name in ids:
             for claim in found[name]["claims"]:
@@ -115,20 +115,20 @@ class Verdicts:
             for name in names.split():
                 claim = self.claims.get(name)
                 if not claim or claim["verdict"] != "erratum":
-                    problems.append(Problem(page.source, number, f"{name} is no erratum of the report"))
+                    problems.append(Problem(page.source, number, f"{name} is not an erratum of the report"))
                     continue
                 told.add(name)
                 said = f"{claim['ours']}; {claim['cause']}" if claim["printed"] and claim["cause"] else claim["ours"]
                 item = name.split("/")[0]
                 evidence.append(rf"\litto{{{item}}}{{{plain(name)}}}: {plain(said)}.")
             lines[number - 1] = f"{place} & {printed} & {derived} & {' '.join(evidence)} & {effect} \\\\"
-        problems += [Problem(page.source, 0, f"the report has the erratum {name}, but no \\erratum tells it")
+        problems += [Problem(page.source, 0, f"the report has the erratum {name}, but no \\erratum describes it")
                      for name, claim in self.claims.items() if claim["verdict"] == "erratum" and name not in told]
         stop_if_any(problems)
         page.latex = "\n".join(lines).replace(r"\begin{errata}", BEGIN_ERRATA).replace(r"\end{errata}", END)
 
     def inventory(self, page: "Page", chapters: list[noweb.Chapter], pages: list["Page"]) -> str:
-        """All items of the report, in its order, and what the inventory lists besides."""
+        """All items of the report, in its order, and then the others of the inventory."""
         homes = {word: chunk for chapter in chapters for chunk in chapter.chunks for word, _ in chunk.defines}
         functions = {match[1]: match[2] for chapter in chapters for chunk in chapter.chunks
                      for listed in REGISTERED.finditer(chunk.text) for match in ROW.finditer(listed[0])}

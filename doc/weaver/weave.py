@@ -146,7 +146,7 @@ class Finisher:
         page.title = page.title or page.name
 
     def hole(self, html: str) -> Element:
-        """Stands for what is HTML already."""
+        """Represents finished HTML."""
         self.holes.append(html)
         return etree.Comment(f"hole {len(self.holes) - 1}")
 
@@ -173,7 +173,7 @@ class Finisher:
             del element.attrib["style"]
 
     def scroll(self, table: Element) -> None:
-        """What may be wider than a phone scrolls by itself."""
+        """Elements that may be wider than a phone scroll separately."""
         head = table.find(".//tr").text_content()
         kind = next((kind for words, kind in self.KINDS.items() if words in head), "")
         if not kind and "ltx_eqn" in table.get("class", ""):
@@ -262,7 +262,7 @@ class Finisher:
             if not re.fullmatch(r"h\d", title.tag):
                 continue
             kind = section.get("class").split()[0].removeprefix("ltx_")
-            level = min(self.LEVELS.get(kind, 6), above + 1)  # a paragraph may stand in a section or deeper
+            level = min(self.LEVELS.get(kind, 6), above + 1)  # a paragraph may be in a section or deeper
             above = level if kind != "paragraph" else above
             self.name(page, kind, section.get("id"), title)
             self.heading(section.get("id"), title, level)
@@ -274,7 +274,7 @@ class Finisher:
 
     @staticmethod
     def name(page: Page, kind: str, anchor: str, title: Element) -> None:
-        """What the contents say."""
+        """The table of contents."""
         title = copy.deepcopy(title)
         etree.strip_tags(title, "a")
         if kind == "section":

@@ -1,7 +1,7 @@
 """Polarimetric image simulation: surfaces, skies, spheres, scenes and Stokes algebra.
 
 The numbers are those of the program ``malus``, to the last bit. Angles are degrees, wavelengths nanometres; the conventions of
-Stokes vectors (what is horizontal, which hand is right) are those of the book's first chapter and stand in the attributes of every dataset.
+Stokes vectors (what is horizontal, which hand is right) are those of the book's first chapter, and are in the attributes of every dataset.
 
 >>> import malus
 >>> malus.brdf("lambertian", 30, 40, 180, reflectance=0.2)[0, 0].round(4)

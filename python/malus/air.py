@@ -17,7 +17,7 @@ SUNLIGHT = 'give "pi", "astm-e490" or a number'
 
 
 class SunPosition(NamedTuple):
-    """Where the sun's centre stands, without refraction."""
+    """The position of the sun's centre, without refraction."""
 
     zenith_deg: npt.NDArray[np.float64]  #: (...), above 90: below the horizon
     azimuth_deg: npt.NDArray[np.float64]  #: (...), compass, clockwise from north, 0 to 360
@@ -89,7 +89,7 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
     wavelength_nm : float or 1-D array, optional
         [nm]; it may be left out where the optical depth ``tau`` is given instead.
     sun_zenith_deg, mu0 : float
-        Where the sun stands: its zenith angle [deg] or the cosine of it.
+        The position of the sun: its zenith angle [deg] or the cosine of it.
     zenith_deg, mu : 1-D array, optional
         Zenith angles of the lines of sight [deg], or their cosines. If neither is given: from 0 to 90 in steps of ``dome_step_deg``.
     phi_deg : 1-D array, optional
@@ -97,7 +97,7 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
     dome_step_deg : float
         Divides 90 [deg].
     direction : {"down", "up"}
-        Which way the light travels.
+        Direction of travel of the light.
     tau_obs : float, optional
         Optical depth over the observer.
     irradiance : {"pi", "astm-e490"} or float
@@ -122,10 +122,10 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
         parameters["depolarization"] = parameters.pop("depolarisation")
     if sun_zenith_deg is not None:
         if mu0 is not None:
-            raise ValueError("malus.sky: sun_zenith_deg: stands beside mu0; give one of them")
+            raise ValueError("malus.sky: sun_zenith_deg: conflicts with mu0; give one of them")
         mu0 = _cosine(checks.number("sky", "sun_zenith_deg", sun_zenith_deg, 0, 90, ANGLE, " deg"), "sun_zenith_deg")
     if zenith_deg is not None and mu is not None:
-        raise ValueError("malus.sky: zenith_deg: stands beside mu; give one of them")
+        raise ValueError("malus.sky: zenith_deg: conflicts with mu; give one of them")
     if mu0 is not None:
         mu0 = checks.number("sky", "mu0", mu0, 0, 1, "give the cosine of the sun's zenith angle")
     if tau_obs is not None:
@@ -133,7 +133,7 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
     checks.text("sky", "model", model, "give a name of malus.skies()")
     checks.text("sky", "convention", convention, "give malus, natraj or iprt")
     if direction not in ("down", "up"):
-        raise ValueError(f"malus.sky: direction = {direction}: is none of the words allowed here; known are: down, up")
+        raise ValueError(f"malus.sky: direction = {direction}: is not one of the words allowed here; choose from: down, up")
     step = checks.number("sky", "dome_step_deg", dome_step_deg, 0.1, 90, "give e.g. 5")
     steps = round(90 / step)
     if abs(steps * step - 90) > 1e-9:
@@ -152,8 +152,8 @@ def sky(model: str = "rayleigh", *, wavelength_nm: npt.ArrayLike | None = None, 
     words = irradiance if isinstance(irradiance, str) else repr(checks.number("sky", "irradiance", irradiance, 0, 1e9, SUNLIGHT))
     light = _malus.sky(model, nm.tolist(), mu0, cosines.tolist(), phi.tolist(), direction == "up", tau_obs, words, convention, parameters)
     first = "Q = ll - rr" if convention == "iprt" else "Q = rr - ll"
-    frame = (f"{first}, l in the meridian plane, r horizontal; U = 2 Re lr*; V > 0: the field turns counter-clockwise for who looks at the "
-             "source; azimuths clockwise from above")
+    frame = (f"{first}, l in the meridian plane, r horizontal; U = 2 Re lr*; V > 0: the field turns counter-clockwise as seen "
+             "looking at the source; azimuths clockwise from above")
     unit = "W m^-2 sr^-1 nm^-1" if irradiance == "astm-e490" else "sr^-1"
     coordinates = {
         "wavelength_nm": ("wavelength_nm", nm if nm.size else [np.nan], {"units": "nm"}),
@@ -177,7 +177,7 @@ def _cosine(zenith_deg: float, name: str) -> float:
 
 @dataclass(frozen=True)
 class Spheres:
-    """What small spheres do to light; the answer of `mie`.
+    """Scattering by small spheres; the result of `mie`.
 
     Attributes
     ----------
@@ -240,11 +240,11 @@ def mie(n: float, k: float = 0.0, *, medium_n: float = 1.0, wavelength_nm: float
     n, k : float
         Index of refraction n + ik of the spheres.
     medium_n : float
-        Index of what is around them.
+        Index of the medium around them.
     wavelength_nm : float
-        In vacuum [nm]; needed but with ``x``.
+        In vacuum [nm]; needed except with ``x``.
     x : float
-        Size 2 pi r / wavelength in the medium, in place of lengths.
+        Size 2 pi r / wavelength in the medium, instead of lengths.
     radius_um : float
         Radius of spheres that are all alike [um].
     effective_radius_um, effective_variance : float

@@ -16,7 +16,7 @@ MOST_NESTED = 100  # objects and lists of a scene in one another
 
 
 def refusal(function: str, name: str, value: object, problem: str, remedy: str) -> ValueError:
-    """The exception to raise. What a value is shows its quotation marks: '2' is no 2."""
+    """The exception to raise. Quotation marks show the type of a value: '2' is not 2."""
     shown = " ".join(_BRIEF.repr(value).split())
     return ValueError(f"malus.{function}: {name} = {shown}: {problem}; {remedy}")
 
@@ -29,7 +29,7 @@ def text(function: str, name: str, value: object, remedy: str) -> str:
 
 
 def _item(value: Any) -> Any:
-    """What an array without axes holds, unless it is masked."""
+    """The value of an array without axes, unless it is masked."""
     return value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not _masked(value) else value
 
 
@@ -56,7 +56,7 @@ def whole(function: str, name: str, value: Any, low: int, high: int, remedy: str
     if not isinstance(value, int | np.integer):
         raise refusal(function, name, value, "is not a whole number", remedy)
     if not low <= value <= high:
-        raise refusal(function, name, int(value), "is not there", remedy)
+        raise refusal(function, name, int(value), "does not exist", remedy)
     return int(value)
 
 
@@ -78,7 +78,8 @@ def array(function: str, name: str, given: Any) -> npt.NDArray[Any]:
     try:
         return np.asarray(given)
     except ValueError:
-        raise ValueError(f"malus.{function}: {name}: is no array, since its rows have different lengths; give rows of one length") from None
+        raise ValueError(f"malus.{function}: {name}: is not an array, because its rows have different lengths; "
+                         "give rows of one length") from None
 
 
 def axis(function: str, name: str, given: Any) -> npt.NDArray[np.float64]:
@@ -89,7 +90,7 @@ def axis(function: str, name: str, given: Any) -> npt.NDArray[np.float64]:
     if values.ndim > 1:
         raise ValueError(f"malus.{function}: {name}: has the shape {values.shape}; give a number or an array with one axis")
     if not values.size:
-        raise ValueError(f"malus.{function}: {name}: holds no number; give one at least")
+        raise ValueError(f"malus.{function}: {name}: has no number; give at least one")
     bad = values[~np.isfinite(values)]
     if bad.size:
         raise ValueError(f"malus.{function}: {name} = {bad.flat[0]:g}: is not a finite number; the axes of a dataset have no holes")
@@ -113,7 +114,7 @@ def stokes_axis(function: str, stokes: xr.DataArray) -> None:
 
 
 def scene(value: Any, at: str = "", depth: int = 0) -> Any:
-    """What JSON can hold of a scene: NumPy's numbers and arrays, and paths, become plain. `at` is the path of a key."""
+    """A scene as JSON: NumPy's numbers and arrays, and paths, become plain values. `at` is the path of a key."""
     if isinstance(value, np.ndarray | np.generic):
         value = array("render", f"scene: {at}", value).tolist()
     if isinstance(value, os.PathLike):
@@ -153,8 +154,8 @@ def frames(wanted: Any) -> list[int]:
     several = isinstance(wanted, Iterable) and not isinstance(wanted, str) and not (isinstance(wanted, np.ndarray) and wanted.ndim == 0)
     numbers = [whole("render", "frames", one, -2**62, 2**62, remedy) for one in (wanted if several else [wanted])]
     if not numbers:
-        raise ValueError("malus.render: frames: holds no frame; give at least one, or leave it out")
+        raise ValueError("malus.render: frames: has no frame; give at least one, or leave it out")
     for i, one in enumerate(numbers):
         if one in numbers[:i]:
-            raise ValueError(f"malus.render: frames = {one}: stands there twice; give each frame once")
+            raise ValueError(f"malus.render: frames = {one}: is given twice; give each frame once")
     return numbers

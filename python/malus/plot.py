@@ -37,7 +37,7 @@ def hue(turns: Array, value: Array | float = 1.0) -> Array:
 
 
 def stretch(values: Array) -> float:
-    """What one value in two hundred exceeds in magnitude; 1 if that is zero."""
+    """The magnitude that one value in two hundred exceeds; 1 if that is zero."""
     good = np.sort(np.abs(values[np.isfinite(values)]))
     top = float(good[good.size - 1 - good.size // 200]) if good.size else 0.0
     return top if top > 0 else 1.0
@@ -89,7 +89,7 @@ def _chosen(light: xr.DataArray, axis: str, name: str, given: int) -> xr.DataArr
     if axis not in light.dims:
         return light
     if not -light.sizes[axis] <= index < light.sizes[axis]:
-        raise ValueError(f"malus.plot: {name} = {index}: is not there; they are counted from 0 to {light.sizes[axis] - 1}")
+        raise ValueError(f"malus.plot: {name} = {index}: does not exist; they are counted from 0 to {light.sizes[axis] - 1}")
     return light.isel({axis: index})
 
 
@@ -108,7 +108,7 @@ def _mark_sky(axes: "Axes", sun_deg: float | None, background: str) -> None:
 
 @xr.register_dataset_accessor("malus")  # type: ignore[no-untyped-call]
 class MalusAccessor:
-    """What a dataset of malus can do: ``ds.malus.plot()``."""
+    """Methods of a dataset of malus: ``ds.malus.plot()``."""
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self._dataset = dataset

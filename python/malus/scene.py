@@ -41,10 +41,10 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
     variables = {
         "radiance": ((*pixels, "band", "stokes"), found["radiance"],
                      {"units": found["unit"], "long_name": "Stokes radiance", "description": found["description"]}),
-        "range_m": (pixels, found["range_m"], {"units": "m", "long_name": "way to what the first ray of a pixel meets; NaN: the sky"}),
+        "range_m": (pixels, found["range_m"], {"units": "m", "long_name": "distance to the first hit of a pixel; NaN: the sky"}),
         "facet": (pixels, found["facet"], {"long_name": "number in the attribute facets; -1: the sky"}),
         "material": (pixels, found["material"], {"long_name": "number in the attribute materials; -1: the sky"}),
-        "sun_hidden": (pixels, found["sun_hidden"], {"long_name": "whether the sun's ray does not reach what is met"}),
+        "sun_hidden": (pixels, found["sun_hidden"], {"long_name": "whether the first hit is in the sun's shadow"}),
         "rays": (pixels, found["rays"], {"units": "1", "long_name": "rays that were followed"}),
     }
     if "stokes_standard_error" in found:
@@ -53,7 +53,7 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
             {"units": found["unit"], "long_name": "standard error of the Stokes radiance", "description": found["description"]})
     if "temperature_K" in found:
         variables["temperature_K"] = (pixels, found["temperature_K"],
-                                      {"units": "K", "long_name": "temperature of what the first ray of a pixel meets; NaN: the sky, or cold"})
+                                      {"units": "K", "long_name": "temperature of the first hit of a pixel; NaN: the sky, or cold"})
     height, width = found["rays"].shape[1:]
     coordinates = {
         "frame": ("frame", np.array(found["frames"], dtype=np.int64), {"long_name": "number of the frame, from 0"}),
@@ -150,7 +150,7 @@ def _numbers_in(description: str, pattern: str, otherwise: Sequence[int]) -> Seq
 
 
 def _of_cube(found: dict[str, Any]) -> xr.Dataset:
-    """One frame from disk. What the header says in words, frame and first pixel, become coordinates."""
+    """One frame from disk. Frame and first pixel, which the header has in words, become coordinates."""
     data = found["data"]
     height, width = data.shape[:2]
     frame, = _numbers_in(found["description"], r", frame (\d+)", [0])
@@ -183,8 +183,8 @@ def _demand_frames(paths: list[str], frames: list[xr.Dataset]) -> None:
     for path, frame in zip(paths[1:], frames[1:]):
         for name in ("y", "x", "band", "stokes"):
             if differ(name):
-                raise ValueError(f"malus.open: {path}: has other coordinates {name} than {paths[0]}; open what are no frames of one "
-                                 "picture one by one, and put parts together with malus merge")
+                raise ValueError(f"malus.open: {path}: has other coordinates {name} than {paths[0]}; open files that are not frames of one "
+                                 "picture separately, and put parts together with malus merge")
         number = frame.frame.item()
         if number in seen:
             raise ValueError(f"malus.open: {path}: is frame {number}, as {seen[number]} is; put parts together with malus merge")
@@ -209,12 +209,12 @@ def open(cube: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> xr.
     Raises
     ------
     ValueError
-        For a file that is no such cube, with its place; for cubes that are not frames of one picture.
+        For a file that is not such a cube, with its place; for cubes that are not frames of one picture.
     """
     several: Iterable[Any] = cube if isinstance(cube, Iterable) and not isinstance(cube, str | bytes | os.PathLike) else [cube]
     paths = [checks.path("open", "cube", path, "give the name of a cube, or of several") for path in several]
     if not all(paths) or not paths:
-        raise ValueError("malus.open: cube: names no cube; give one at least")
+        raise ValueError("malus.open: cube: has no cube; give at least one")
     frames = [_of_cube(_malus.read_cube(path)) for path in paths]
     _demand_frames(paths, frames)
     return frames[0] if len(frames) == 1 else xr.concat(frames, dim="frame", combine_attrs="drop_conflicts", join="exact")

@@ -1,8 +1,9 @@
 """Stokes vectors and Mueller matrices in arrays.
 
 A Stokes vector is the last axis, (S0, S1, S2, S3); a Mueller matrix the last two. All axes before broadcast. An
-``xarray.DataArray`` with a dimension ``stokes`` is taken as well and comes back as one. Arrays of 32-bit numbers are read as
-they are and give 32-bit answers; what is between is computed with 64 bits. A hole stays one: what is computed from a NaN is NaN.
+``xarray.DataArray`` with a dimension ``stokes`` is taken as well and comes back as one. Arrays of 32-bit numbers are
+read as they are and give 32-bit results; intermediate values have 64 bits. A hole stays one: what is computed from a
+NaN is NaN.
 """
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -139,7 +140,7 @@ def rotate_mueller(mueller: npt.ArrayLike, angle_deg: npt.ArrayLike) -> npt.NDAr
 
 
 def apply(mueller: npt.ArrayLike, stokes: Any) -> Any:
-    """What elements make of light, M S.
+    """Light behind elements, M S.
 
     Parameters
     ----------
@@ -218,7 +219,7 @@ class LuChipman(NamedTuple):
 
 
 def lu_chipman(mueller: npt.ArrayLike) -> LuChipman:
-    """What Mueller matrices are made of.
+    """The factors of Mueller matrices.
 
     Parameters
     ----------
@@ -227,7 +228,7 @@ def lu_chipman(mueller: npt.ArrayLike) -> LuChipman:
     Returns
     -------
     LuChipman
-        NaN for a matrix that cannot be taken apart: not finite, m00 <= 0 (but for the zero matrix, which passes nothing), or a
+        NaN for a matrix that cannot be taken apart: not finite, m00 <= 0 (except the zero matrix, which transmits nothing), or a
         diattenuation above 1.
     """
     return LuChipman(*_malus.lu_chipman(mueller))

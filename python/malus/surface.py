@@ -1,4 +1,4 @@
-"""What surfaces do to light: Mueller BRDFs, reflectances, emissivities."""
+"""Surfaces: Mueller BRDFs, reflectances, emissivities."""
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ KNOWN = "give a name of malus.models()"
 
 @dataclass(frozen=True)
 class Parameter:
-    """What a model or a sky can be told.
+    """A parameter of a model or a sky.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Model:
-    """A reflectance model: what it is and what it promises.
+    """A reflectance model: its description and its properties.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ def brdf(model: str, theta_i_deg: npt.ArrayLike, theta_r_deg: npt.ArrayLike, phi
          wavelength_nm: npt.ArrayLike = 550.0, **parameters: Any) -> Floats:
     """Mueller matrices of a surface per steradian.
 
-    Angles and wavelengths broadcast. Many wavelengths are cheapest along an axis of their own: the geometry is then worked out
+    Angles and wavelengths broadcast. Many wavelengths are fastest along a separate axis: the geometry is then computed
     once for all of them.
 
     Parameters

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""What a build of HEAD from an empty directory costs, part by part, without a compiler cache, and what an edit costs.
+"""Measure a build of HEAD from an empty directory, part by part, without a compiler cache, and an edit.
 
     build.py BENCH JOBS
 
 Clones HEAD into BENCH/tree, which is emptied before, and does there what `make` and `make test` do. For each part it
 prints the CPU seconds of all its processes and the seconds on the clock, and records them in validation/build-times.csv.
-Then it edits the code of some chapters that have a test of their own, spread evenly over the floors, one after the other:
-an edit costs the seconds on the clock from the change to the end of its test. At the end stand the files that took the
-compiler longest, as Ninja's log has them. CPU seconds depend little on JOBS and on the machine's other work, seconds
+Then it edits the code of some chapters that have their own test, spread evenly over the floors, one after the other:
+an edit costs the seconds on the clock from the change to the end of its test. At the end it lists the files that took
+the compiler longest, from Ninja's log. CPU seconds depend little on JOBS and on the machine's other work, seconds
 on the clock much: measure on an idle machine.
 """
 import csv
@@ -66,14 +66,14 @@ def whole(name: str, rows: list[Row]) -> Row:
 
 
 def chapters(tree: str) -> list[str]:
-    """The chapters that are edited: of those with a test of their own, one in so many."""
+    """The chapters that are edited: of those with their own test, one in so many."""
     tested = [path for path in sorted(glob.glob(os.path.join(tree, "nw", "*", "*.nw")))
               if os.path.exists(os.path.join(tree, "tests", os.path.basename(path)[:-3] + "_test.cpp"))]
     return [tested[len(tested) * (2 * k + 1) // (2 * EDITS)] for k in range(EDITS)]
 
 
 def edit(tree: str, chapter: str, jobs: str) -> Row:
-    """What it costs to give the code of a chapter a new name and to run its test."""
+    """The time to give the code of a chapter a new name and to run its test."""
     floor, name = os.path.basename(os.path.dirname(chapter)), os.path.basename(chapter)[:-3]
     with open(chapter, "a", encoding="utf-8") as file:
         file.write(f'\n<<{floor}/{name}.cpp>>=\nextern "C" {{\nextern int malus_edited_{name};\nint malus_edited_{name} = 1;\n}}\n@\n')

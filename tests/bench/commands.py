@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a user waits for: whole commands with all their files, on the copper chunky bar.
+"""Measure whole commands with all their files, on the copper chunky bar.
 
     commands.py MALUS [OUT.csv]
 

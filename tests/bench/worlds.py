@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a ray of a large world costs: the town of scenes/town.py with shared meshes, with all triangles written out, and at 10^9.
+"""Measure the cost of a ray in a large world: the town of scenes/town.py with shared meshes, with all triangles written out, and at 10^9.
 
     worlds.py MALUS [OUT.csv]
 
@@ -67,7 +67,7 @@ def main() -> None:
             rows.append((kind, info["triangles"], info["instances"], f"{begin:.2f}", f"{memory:.0f}", rays, f"{each:.1f}"))
             print(f"{kind:12} {info['triangles']:>12} triangles, {memory / 2**20:8.0f} MiB, {begin:6.2f} s to begin, {each:8.1f} ns a ray")
     if len(sys.argv) > 2:
-        header = ("# title: What a picture of 240 x 160 pixels of a town uses: shared meshes, written out, and a billion triangles\n"
+        header = ("# title: Cost of a picture of 240 x 160 pixels of a town: shared meshes, written out, and a billion triangles\n"
                   f"# source: tests/bench/worlds.py, CPU seconds and memory of malus render, least of {TURNS} runs each\n"
                   f"# date: {datetime.date.today()}\n"
                   "kind,triangles,instances,begin_s,memory_bytes,rays,ns_per_ray\n")

@@ -1,4 +1,4 @@
-"""What the tests of the Python module share: the program beside it, and random numbers that are the same each time."""
+"""Common code of the tests of the Python module: the program beside it, and random numbers that are the same each time."""
 import csv
 import io
 import os
@@ -19,7 +19,7 @@ PROGRAM = os.environ.get("MALUS_PROGRAM", "build/malus")
 
 
 def run_malus(*words: object) -> str:
-    """What the program prints; an error of it is one of the test."""
+    """The output of the program; an error of the program is one of the test."""
     return subprocess.run([PROGRAM, *map(str, words)], check=True, capture_output=True, text=True).stdout
 
 

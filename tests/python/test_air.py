@@ -29,7 +29,7 @@ def test_times_of_all_kinds_are_one_moment() -> None:
     assert malus.sun(*ROCHESTER, "2001-06-10T17:09:00Z") != expected
     days = np.array(["2001-06-10T17:08", "2001-07-10T17:08"], dtype="datetime64[m]")
     assert malus.sun(np.array([[43.16], [0]]), -77.61, days).zenith_deg.shape == (2, 2)
-    # libnova remembers a nutation for a tenth of a day: what was asked before may show in the twelfth place
+    # libnova caches a nutation for a tenth of a day: an earlier call may change the twelfth digit
     assert np.isclose(malus.sun(np.array([[43.16], [0]]), -77.61, days).zenith_deg[0, 0], expected.zenith_deg, rtol=0, atol=1e-11)
 
 
@@ -104,7 +104,7 @@ def test_refusals_of_the_sky(words: dict[str, Any], flags: tuple[Any, ...] | Non
 
 @pytest.mark.parametrize("words, message", [
     ({"sun_zenith_deg": 95}, "malus.sky: sun_zenith_deg = 95 deg: must be 0 to 90; give the angle from the zenith, in degrees"),
-    ({"sun_zenith_deg": 5, "mu0": 1}, "malus.sky: sun_zenith_deg: stands beside mu0; give one of them"),
+    ({"sun_zenith_deg": 5, "mu0": 1}, "malus.sky: sun_zenith_deg: conflicts with mu0; give one of them"),
     ({"sun_zenith_deg": 5, "dome_step_deg": 7}, "malus.sky: dome_step_deg = 7: does not divide 90; give e.g. 5"),
     ({"sun_zenith_deg": 5, "mu": np.ones((2, 2))}, "malus.sky: mu: has the shape (2, 2); give a number or an array with one axis"),
     ({}, "malus.sky: sun_zenith_deg: is missing; give sun_zenith_deg, or mu0, the cosine of the sun's zenith angle"),
@@ -141,7 +141,7 @@ def test_spheres_are_the_programs(words: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("words, message", [
     ({"n": 1.5}, "malus.mie: radius_um: is missing; give x, radius_um, effective_radius_um, median_radius_um or sizes"),
-    ({"n": 1.5, "x": 1, "radius_um": 1}, "malus.mie: radius_um = 1: stands beside x; say in one way how large they are"),
+    ({"n": 1.5, "x": 1, "radius_um": 1}, "malus.mie: radius_um = 1: conflicts with x; specify their size exactly once"),
     ({"n": 1.5, "radius_um": 1}, "malus.mie: wavelength_nm: is missing; give it beside radius_um"),
     ({"n": 1.5, "x": 1, "deviation": 2}, "malus.mie: deviation = 2: has no meaning beside x; leave it out"),
     ({"n": 1000, "x": 1}, "malus.mie: n = 1000: must be 0.01 to 100; correct it"),

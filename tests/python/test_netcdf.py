@@ -76,7 +76,7 @@ def test_errors_are_those_of_the_cube_and_of_the_module(folder: Path) -> None:
         for found in (ds.stokes_standard_error, rendered.stokes_standard_error):
             assert np.array_equal(found.values, error) and (found.values[..., 0] > 0).any()
         assert np.array_equal(ds.radiance.values, rendered.radiance.values)
-    for batches, words in ((0, "is no number of batches"), (4097, "give a number from 1 to 4096")):
+    for batches, words in ((0, "is not a number of batches"), (4097, "give a number from 1 to 4096")):
         with pytest.raises(ValueError, match=words):
             malus.render(folder / "plate.json", batches=batches)
     aim = ("--until", "dolp=0.05", "--batches", "8")
@@ -100,7 +100,7 @@ def test_what_are_no_frames_of_one_picture_is_not_joined(folder: Path) -> None:
     whole = folder / "out/plate.0000.img"
     cases: list[tuple[list[Path], str]] = [(tiles, "has other coordinates y than"),
                                            (strips, "is frame 0, as .* is; put parts together with malus merge"),
-                                           ([whole, whole], "is frame 0, as"), ([], "names no cube")]
+                                           ([whole, whole], "is frame 0, as"), ([], "has no cube")]
     for paths, words in cases:
         with pytest.raises(ValueError, match=words):
             malus.open(paths)
@@ -155,8 +155,8 @@ def test_what_is_no_netcdf_is_refused(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("text", encoding="utf-8")
     (tmp_path / "cut.nc").write_bytes(whole[:len(whole) // 2])
     xr.Dataset({"rain": ("t", [1.0])}).to_netcdf(tmp_path / "rain.nc")
-    for name, words in (("text.nc", "cannot be read as netCDF"), ("cut.nc", "cannot be read as netCDF"), ("none.nc", "is not there"),
-                        ("rain.nc", "radiance: is not there, or of another shape")):
+    for name, words in (("text.nc", "cannot be read as netCDF"), ("cut.nc", "cannot be read as netCDF"), ("none.nc", "does not exist"),
+                        ("rain.nc", "radiance: does not exist, or of another shape")):
         line = complaint("info", tmp_path / name)
         assert name in line and words in line and "\n" not in line
         with pytest.raises(ValueError, match=name):

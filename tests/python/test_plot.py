@@ -81,7 +81,7 @@ def test_a_selection_is_drawn_and_what_is_not_there_is_named() -> None:
     for chosen in (ds.isel(frame=1, band=2), ds.isel(frame=1).sel(band="650", drop=True), ds.isel(frame=[1], band=[2])):
         assert np.array_equal(image(chosen.malus.plot().axes[2]), whole)
     assert not np.array_equal(image(ds.isel(frame=0, band=2).malus.plot().axes[2]), whole)  # negative control
-    for call, words in (({"band": 3}, r"band = 3: is not there; they are counted from 0 to 2"), ({"frame": 5}, "frame = 5")):
+    for call, words in (({"band": 3}, r"band = 3: does not exist; they are counted from 0 to 2"), ({"frame": 5}, "frame = 5")):
         with pytest.raises(ValueError, match=words):
             ds.malus.plot(**call)
 
@@ -99,7 +99,7 @@ def test_examples_run(example: Path, tmp_path: Path) -> None:
 
 
 def test_the_readmes_lines_are_the_example() -> None:
-    """What README shows runs: it is the example, line by line."""
+    """The code in README runs: it is the example, line by line."""
     lines = Path("examples/polarized_sky.py").read_text(encoding="utf-8").split('"""')[2].strip().splitlines()
     readme = Path("README.md").read_text(encoding="utf-8")
     assert all(f"    {line}\n" in readme for line in lines if line)

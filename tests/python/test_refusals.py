@@ -19,7 +19,7 @@ SCENE: dict[str, Any] = {
 NAN, INF = float("nan"), float("inf")
 EMPTY: list[Any] = []
 NOON = "2001-06-10T17:08:00Z"
-masked: Any = np.ma.array  # for mypy, which knows no type of it
+masked: Any = np.ma.array  # for mypy, which has no type for it
 MASKED = masked([30.0, 40.0], mask=[False, True])
 LIGHT = xr.DataArray(np.ones((2, 4)), dims=("x", "stokes"))
 

@@ -118,12 +118,13 @@ def test_a_wrong_key_has_its_path_and_a_hint(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"tile": (0, 0, 50, 10)}, "malus.render: tile = (0, 0, 50, 10): is no part of the picture; "
+    ({"tile": (0, 0, 50, 10)}, "malus.render: tile = (0, 0, 50, 10): is not a part of the picture; "
      "give x0,y0,x1,y1 with x0 < x1 <= 40 and y0 < y1 <= 24"),
-    ({"tile": (0, 0, 5)}, "malus.render: tile = (0, 0, 5): is no part of the picture; give x0,y0,x1,y1 with x0 < x1 <= 40 and y0 < y1 <= 24"),
-    ({"frames": 1}, "malus.render: frames = 1: is no frame of the scene; give frames from 0 to 0"),
-    ({"frames": []}, "malus.render: frames: holds no frame; give at least one, or leave it out"),
-    ({"seed": -1}, "malus.render: seed = -1: is not made of whole numbers; give a number such as 1"),
+    ({"tile": (0, 0, 5)}, "malus.render: tile = (0, 0, 5): is not a part of the picture; "
+     "give x0,y0,x1,y1 with x0 < x1 <= 40 and y0 < y1 <= 24"),
+    ({"frames": 1}, "malus.render: frames = 1: is not a frame of the scene; give frames from 0 to 0"),
+    ({"frames": []}, "malus.render: frames: has no frame; give at least one, or leave it out"),
+    ({"seed": -1}, "malus.render: seed = -1: does not consist of whole numbers; give a number such as 1"),
     ({"threads": -1}, "malus.render: threads = -1: must be 0 to 256; give a number of threads, or 0 for all processors"),
 ])
 def test_refusals(words: dict[str, Any], message: str) -> None:

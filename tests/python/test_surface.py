@@ -20,7 +20,7 @@ def geometries(rng: np.random.Generator, count: int) -> tuple[Array, Array, Arra
 
 def by_program(folder: Path, model: str, parameters: dict[str, Any], columns: dict[str, Array], wavelength_nm: float = 550,
                what: tuple[str, ...] = ()) -> str:
-    """The answer of malus brdf to a file of geometries. repr() of a float keeps its bits."""
+    """The output of malus brdf for a file of geometries. repr() of a float keeps its bits."""
     rows = zip(*(column.tolist() for column in columns.values()))
     (folder / "q.csv").write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n", encoding="utf-8")
     flags = [word for name, value in parameters.items() for word in ("--param", f"{name}={value}")]

@@ -2,7 +2,7 @@
 width = 840; height = 700
 load style
 member(w, s) = abs(column('wavelength_nm') - w) < 1 && abs(column('sigma') - s) < 1e-6 ? column('f00') : NaN
-# the key stands below the panels, where no curve is
+# the key is below the panels, where no curve is
 of(g, w) = abs(column('grit') - g) < 1 && abs(column('wavelength_nm') - w) < 1 ? column('f00') : NaN
 set multiplot
 set xrange [0:80]; set xtics 20

@@ -39,7 +39,7 @@ plot 'hypotheses.csv' using 'view_deg':'dolp_none' with lines linetype 7, \
      '' using 'view_deg':'dolp_product' with lines linetype 5, \
      '' using 'view_deg':'dolp_unshadowed' with lines linetype 4, \
      '' using 'view_deg':'dolp_smith' with lines linetype 3
-# the key of all, in a strip of its own
+# the key of all, in a separate strip
 unset object 1
 set origin 0,0.01; set size 1,0.18
 set lmargin 2; set rmargin 2; set bmargin 0; set tmargin 0

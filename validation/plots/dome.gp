@@ -8,7 +8,7 @@ set parametric; set trange [0:2*pi]
 set datafile missing '?'  # an image needs all its pixels; those outside of the dome are nan
 set tmargin at screen 0.90; set bmargin at screen 0.04
 set cbtics font ',11' scale 0.5
-beside(x, y) = abs(y) > 75 ? x - 15 : x + 6  # no room beside a mark at the rim: its name stands further in
+beside(x, y) = abs(y) > 75 ? x - 15 : x + 6  # no room beside a mark at the rim: its name is further in
 under(y) = abs(y) > 75 ? y - 11*sgn(y) : y
 array Column[3]; Column[1] = 'I'; Column[2] = 'DoLP'; Column[3] = 'AoLP_deg'
 array Title[3]; Title[1] = 'radiance'; Title[2] = 'DoLP'; Title[3] = 'AoLP [deg]'

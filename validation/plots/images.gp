@@ -2,7 +2,7 @@
 #
 # <pictures>-panels.csv: title,low,high,map,across,unit: a row for each panel, in reading order. map is grey,
 # level, signed or hue; across is the number of panels in a row; unit is the legend of the colour bar. Where not all
-# panels have one stretch and one map, each has a colour bar of its own; if only the last
+# panels have one stretch and one map, each has its own colour bar; if only the last
 # differs, it has one below itself, and the others share theirs.
 # <pictures>.csv: x, y and a column for each panel; x counts pixels from the left, y rows from the top. Columns are
 # asked for by number: for a name, gnuplot evaluates an expression at every pixel, which takes twice as long.

@@ -1,4 +1,4 @@
-# X.sky: where the neutral points stand (neutral.csv).
+# X.sky: the positions of the neutral points (neutral.csv).
 load style
 set xrange [0:62]; set yrange [0:30]
 set xlabel 'elevation of the sun [deg]'; set ylabel 'distance [deg]'

@@ -11,7 +11,7 @@
 # Data are CSV with one line of column names, so a script plots columns by name:
 #   plot 'fresnel.csv' using 'zenith_deg':'Rs' with lines title 'R_s'
 #
-# Linetypes 1 to 8 are the colours of Okabe and Ito, told apart by colour-blind readers as well; the yellow,
+# Linetypes 1 to 8 are the colours of Okabe and Ito, distinguishable for colour-blind readers as well; the yellow,
 # weak on white, comes last. Each has its own dash and point. By convention:
 #   linestyle 11   as printed in the thesis (points)      linestyle 12   a reference line, e.g. zero
 

@@ -1,4 +1,4 @@
-// Random123 refuses processors that its authors did not try. Philox is integer arithmetic; it is told of one that they did.
+// Random123 refuses processors that its authors did not try. Philox is integer arithmetic; it is compiled as for one that they did.
 // The standard headers come first, since the name must not reach them.
 #pragma once
 #include <algorithm>
