@@ -248,6 +248,28 @@ class Solutions(unittest.TestCase):
                            "--phi-deg", "0", "--format", "csv"))
         self.quoted("surface/BRDFMinnaert", float(row["f00"]), 4)
 
+    def test_mie(self) -> None:
+        def spheres(*flags: str) -> dict[str, float]:
+            return {name: float(value) for name, value in last_row(run("mie", *flags)).items() if value}
+
+        grain = [spheres("--n", "1.5", "--radius-um", "0.01", "--wavelength-nm", nm)["Q_sca"] for nm in ("550", "400")]
+        self.quoted("air/Mie", 1e5 * grain[0], 3)
+        self.quoted("air/Mie", 1e5 * grain[1], 2)
+        self.quoted("air/Mie", grain[1] / grain[0], 2)
+        for size in ("100", "450"):
+            self.quoted("air/Mie", spheres("--n", "1.33", "--x", size)["Q_ext"], 2)
+        self.quoted("air/Mie", spheres("--n", "1.5", "--k", "1", "--x", "100")["Q_abs"], 2)
+
+    def test_haze(self) -> None:
+        sky = ["--wavelength-nm", "550", "--albedo", "0.1"]
+        clear, q_clear = zenith(*sky)
+        thin, q_thin = zenith(*sky, "--aerosol", "maritime", "--aerosol-tau", "0.1")
+        hazy, q_hazy = zenith(*sky, "--aerosol", "maritime", "--aerosol-tau", "0.3")
+        for degree in (q_clear / clear, q_thin / thin, q_hazy / hazy):
+            self.quoted("air/AerosolSky", degree, 2)
+        for number in (clear, q_clear, hazy, q_hazy):
+            self.quoted("air/AerosolSky", number, 4)
+
 
 if __name__ == "__main__":
     unittest.main()
