@@ -30,8 +30,8 @@ set(objects)
 foreach(chapter base/CDVector base/Error base/Limits base/Random base/InputFiles
     light/CDPolarimetricMath light/CDSpectralLocation light/CDSpectralPoint light/CDSpectralUnits light/CDSpectralVector light/Parameters
     surface/Fresnel surface/Microfacets surface/DirectionSampling surface/CDBRDFModel surface/ModelRegistry surface/DHRTorranceSparrow
-    surface/BRDFTorranceSparrow surface/TorranceSparrowGather surface/ManyMatrices
-    air/RayleighLight air/NeutralPoints render/ErrorBars live/LiveFigure live/LiveFigures)
+    surface/FacetIntegral surface/BRDFTorranceSparrow surface/TorranceSparrowGather surface/ManyMatrices
+    air/RayleighLight air/RayleighOperators air/NeutralPoints render/ErrorBars live/LiveFigure live/LiveFigures)
   string(REPLACE / - object ${chapter})
   set(object ${live}/${object}.o)
   add_custom_command(

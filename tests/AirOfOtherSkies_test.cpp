@@ -1,4 +1,5 @@
-// The air before a camera under skies that are not made of air (nw/files/SceneReader.nw, nw/air/AerosolSky.nw).
+// The air before a camera under skies that are not made of air (nw/air/AirBetween.nw,
+// nw/air/AerosolSky.nw, nw/files/SceneReader.nw).
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The light of many directions at once: the models that have a fast way (nw/surface/BRDFTorranceSparrow.nw,
+// The light of many directions at once: the models that have a fast way (nw/surface/TorranceSparrowGather.nw,
 // nw/surface/BRDFDiffuse.nw) beside the plain one.
 #include <gtest/gtest.h>
 

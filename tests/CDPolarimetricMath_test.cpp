@@ -1,4 +1,4 @@
-// Stokes vectors and Mueller matrices (nw/light/CDPolarimetricMath.nw), seen from outside:
+// Stokes vectors and Mueller matrices (nw/light/CDPolarimetricMath.nw, nw/light/LuChipman.nw), seen from outside:
 // against plain 4x4 algebra, against electric fields traced in time, against Jones matrices,
 // against print.
 #include "malus/light/CDPolarimetricMath.hpp"

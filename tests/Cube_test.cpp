@@ -1,4 +1,5 @@
-// Cubes on disk, views of them and pictures to look at (nw/files/Cube.nw, nw/files/CubeView.nw, nw/files/Quicklooks.nw).
+// Cubes on disk, views of them and pictures to look at (nw/files/Cube.nw, nw/files/CubeView.nw, nw/files/Quicklooks.nw,
+// nw/files/SpectralEXR.nw).
 #include "malus/files/Cube.hpp"
 
 #include <OpenImageIO/imageio.h>

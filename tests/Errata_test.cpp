@@ -1,4 +1,4 @@
-// Findings about the thesis, and the list of errata against the committed verdicts (nw/thesis/Errata.nw).
+// Findings about the thesis, and the list of errata against the committed verdicts (nw/thesis/Errata.nw, PlateDigits.nw).
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The doors of tests/fuzz without a fuzzer: inputs that were findings once, and a few random ones (tests/fuzz/corpus, make fuzz).
+// The doors of tests/fuzz without a fuzzer: inputs that were findings once, and a few random ones (tests/fuzz/corpus, make fuzz;
+// nw/base/Error.nw).
 // MALUS_FUZZ_INPUTS=100000 MALUS_FUZZ_SEED=7 build/tests/Fuzz_test throws more of them.
 #include <gtest/gtest.h>
 

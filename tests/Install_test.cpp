@@ -1,5 +1,5 @@
 // The installed tree, as its users meet it: moved to another place, its programs find their libraries and data, and the
-// programs of examples/ are built against it and run. Where a build finds its data: DataFiles_test.cpp.
+// programs of examples/ are built against it and run. Where a build finds its data: DataFiles_test.cpp (nw/base/DataFiles.nw).
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// The live figures against the classes that they show (nw/live/LiveFigures.nw).
+// The live figures against the classes that they show (nw/live/LiveFigures.nw, LiveFigure.nw).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The polarised sky as surfaces see it: chapter RayleighSky through the radiometry of Radiometry.
+// The polarised sky as surfaces see it: nw/air/RayleighSky.nw through nw/render/Radiometry.nw.
 #include <gtest/gtest.h>
 
 #include <array>

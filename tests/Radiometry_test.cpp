@@ -1,4 +1,5 @@
-// The light that leaves surfaces (nw/render/Radiometry.nw, nw/render/HemisphereRays.nw).
+// The light that leaves surfaces (nw/render/Radiometry.nw, nw/render/HemisphereRays.nw,
+// nw/render/TwoAndAHalfBounces.nw).
 #include "malus/render/Radiometry.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The exact sky of a Rayleigh atmosphere (nw/air/RayleighLight.nw).
+// The exact sky of a Rayleigh atmosphere (nw/air/RayleighLight.nw, nw/air/RayleighOperators.nw).
 #include "malus/air/RayleighLight.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // Whole commands on input that is wrong or hostile: each is answered by one line that names the place and the remedy, with exit code 2, and
-// no file is left. The cases are former findings of attacks on the program.
+// no file is left. The cases are former findings of attacks on the program (nw/files/SceneChecks.nw,
+// nw/app/CommandLine.nw).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
-// The bench of thesis chapter 3 and the verdicts of its items (nw/thesis/Section3.nw).
+// The bench of thesis chapter 3 and the verdicts of its items (nw/thesis/Section3.nw, Bench.nw,
+// Section3Matrices.nw, Slips.nw).
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

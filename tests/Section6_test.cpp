@@ -1,4 +1,4 @@
-// The verdicts of the items of thesis chapter 6 and appendix A (nw/thesis/Section6.nw).
+// The verdicts of the items of thesis chapter 6 and appendix A (nw/thesis/Section6.nw, AppendixA.nw).
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Curves through the BRDF and the direct evaluation of sections 7.2 to 7.4 (nw/thesis/Section72.nw).
+// Curves through the BRDF and the direct evaluation of sections 7.2 to 7.4 (nw/thesis/Section72.nw,
+// LobeShapes.nw).
 #include "malus/thesis/Section72.hpp"
 
 #include <gtest/gtest.h>

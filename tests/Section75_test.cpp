@@ -1,4 +1,5 @@
-// The pictures of sections 7.1 and 7.5 to 7.8: scene, cheap items and their controls (nw/thesis/Section75.nw, FlatPlate.nw, Section76.nw).
+// The pictures of sections 7.1 and 7.5 to 7.8: scene, cheap items and their controls (nw/thesis/Section75.nw, FlatPlate.nw, CopperRays.nw,
+// Section76.nw).
 #include "malus/thesis/Section75.hpp"
 
 #include <gtest/gtest.h>

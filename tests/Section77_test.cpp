@@ -1,4 +1,4 @@
-// The copper bar under a polarised sky, and the checks of that sky (nw/thesis/Section77.nw).
+// The copper bar under a polarised sky, and the checks of that sky (nw/thesis/Section77.nw, XSky.nw).
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Mixtures of spheres and inversions of AERONET (nw/air/SizeMixtures.nw), from outside, by malus mie.
+// Scattering by mixtures of spheres and inversions of AERONET (nw/air/SizeMixtures.nw), from outside, by malus mie.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The sun's disk against independent results: segments and lenses of circles, Fresnel's
-// reflectance, and sums over the disk (explained in nw/render/Radiometry.nw, section "The sun's disk").
+// reflectance, and sums over the disk (nw/render/SunDisk.nw).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Air that glows (nw/air/ThermalAir.nw).
+// Thermal emission of the air (nw/air/ThermalAir.nw).
 #include "malus/air/ThermalAir.hpp"
 
 #include <gtest/gtest.h>

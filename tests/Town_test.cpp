@@ -1,4 +1,5 @@
-// The town of scenes/town.py, a small one: noon and night, in visible light and at 10 um, of one scene.
+// The town of scenes/town.py, a small one: noon and night, in visible light and at 10 um, of one scene (nw/thesis/XWorlds.nw,
+// nw/air/DayAndNightSky.nw).
 #include <gtest/gtest.h>
 
 #include <array>

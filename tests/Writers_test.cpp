@@ -1,4 +1,5 @@
-// A program among others, from outside (nw/app/Process.nw, nw/app/CommandRender.nw, CommandLine.nw): two writers, closed
+// A program among others, from outside (nw/app/Process.nw, nw/app/CommandRender.nw, CommandLine.nw,
+// nw/files/OutputLock.nw): two writers, closed
 // and full streams, lost and damaged files, limits, a setting sun, a moved program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

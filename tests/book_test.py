@@ -3,7 +3,8 @@
 
 Each page must be valid HTML, fit a phone, a tablet and a desk without sideways scrolling, and leave the browser's
 console silent; its colours must be distinguishable in the light and the dark theme; every public name of every header
-must be in the index with a description; every item of the inventory must be reachable from the last part.
+must be in the index with a description; every item of the inventory must be reachable from the last part, and
+every test from a chapter.
 (Broken links and anchors, and what LaTeXML complains of, stop the weaving itself.)
 
 The HTML is checked by tidy, which verifies the nesting of elements, as a mere parser does not, and reads the whole book
@@ -115,6 +116,19 @@ def unmapped(chain: str, files: list[str]) -> list[str]:
     return [file for file in files if "-" in file and file not in boxes]
 
 
+def unshown(sources: dict[str, str], book: dict[str, str]) -> list[str]:
+    """Tests of GoogleTest without a place on the page of their file, or to which no chapter leads."""
+    linked = {link for name, text in book.items() if "-" in name for link in re.findall(r'<tr><td><a href="([^"#]*_test\.html#[^"]*)"', text)}
+    out = []
+    for path, text in sources.items():
+        page = os.path.basename(path).replace(".cpp", ".html")
+        places = set(re.findall(r' id="([^"]*)"', book.get(page, "")))
+        for suite, name in re.findall(r"^(?:TEST|TEST_F|RC_GTEST_PROP)\(\s*(\w+),\s*(\w+)", text, re.MULTILINE):
+            if f"{suite}.{name}" not in places or f"{page}#{suite}.{name}" not in linked:
+                out.append(f"{path}: {suite}.{name}")
+    return out
+
+
 class Pages(unittest.TestCase):
     """Tests without a browser."""
 
@@ -149,6 +163,12 @@ class Pages(unittest.TestCase):
         files = [os.path.basename(path) for path in pages()]
         self.assertGreater(len([file for file in files if "-" in file]), 80)
         self.assertEqual(unmapped(read(os.path.join(BOOK, "chain.html")), files), [])
+
+    def test_every_test_has_its_source_and_a_chapter_that_leads_there(self) -> None:
+        sources = {path: read(path) for path in glob.glob(os.path.join(ROOT, "tests", "*_test.cpp"))}
+        book = {os.path.basename(path): read(path) for path in pages()}
+        self.assertGreater(len(sources), 100)
+        self.assertEqual(unshown(sources, book), [])
 
     def test_every_item_of_the_inventory_is_reachable_from_the_last_part(self) -> None:
         """A row of its table leads to chapter and code, or owns that nothing is built yet."""
@@ -212,6 +232,11 @@ class InABrowser(unittest.TestCase):
             self.assertIn(f'id="{anchor}"', read(os.path.join(BOOK, page)), address)
         self.assertEqual(self.found("qwertyuiop"), [])
 
+    def test_search_finds_tests_by_their_words_and_by_their_names(self) -> None:
+        place = "LayeredLight_test.html#LayeredLightInvariant.EnergyIsConserved"
+        for query in ("LayeredLightInvariant.EnergyIsConserved", "energy+is+conserved"):
+            self.assertIn(place, self.found(query))
+
     def test_search_knows_stems_spellings_symbols_and_messages(self) -> None:
         for one, other in (("polarised+light", "polarized+light"), ("roughness", "rough"), ("the+colour+of+metres", "color+meter")):
             with self.subTest(one):
@@ -269,6 +294,16 @@ class NegativeControls(unittest.TestCase):
     def test_map(self) -> None:
         chain = '<a href="light-A.html#ch:A"><rect x="1"/></a> <a href="light-B.html#ch:B">B</a>'
         self.assertEqual(unmapped(chain, ["light-A.html", "light-B.html", "index.html"]), ["light-B.html"])
+
+    def test_tests(self) -> None:
+        sources = {"tests/A_test.cpp": "TEST(AIdentity, One) {\n}\nRC_GTEST_PROP(AIdentity, Two, ()) {\n}\n"}
+        source = '<span id="AIdentity.One"></span><span id="AIdentity.Two"></span>'
+        rows = '<tr><td><a href="A_test.html#AIdentity.One">One</a><tr><td><a href="A_test.html#AIdentity.Two">Two</a>'
+        self.assertEqual(unshown(sources, {"light-A.html": rows, "A_test.html": source}), [])
+        lost = ["tests/A_test.cpp: AIdentity.Two"]
+        self.assertEqual(unshown(sources, {"light-A.html": rows, "A_test.html": source.replace("Two", "Too")}), lost)
+        self.assertEqual(unshown(sources, {"light-A.html": rows.replace("Two", "Too"), "A_test.html": source}), lost)
+        self.assertEqual(len(unshown(sources, {"light-A.html": rows})), 2)
 
     @unittest.skipIf(lacks(shutil.which("ctags"), "universal-ctags"), lacks(shutil.which("ctags"), "universal-ctags"))
     def test_names(self) -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Use the live figures as a reader does: live_test.py [BOOK [LIBRARY [MALUS]]].
+"""Use the live figures as a reader does (nw/live/LiveFigure.nw): live_test.py [BOOK [LIBRARY [MALUS]]].
 
 A headless Chromium opens the pages of the woven book, drags every slider by key and by value, and compares the numbers
 that the page shows with those of the same functions compiled for this machine (build/lib/libmalus_live.so) and, where

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The manual pages and completions beside what the program's help says.
+"""The manual pages and completions beside what the program's help says (nw/app/Manual.nw).
 
     manual_test.py MALUS DIRECTORY
 

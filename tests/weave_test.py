@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see.
+"""The weaver's own test: a book of two chapters is woven, looked at, and broken in every way the weaver promises to see; and
+the page of a report (nw/thesis/Report.nw).
 
 Identity: contents that the pages must have. Negative controls: each fault is put in alone, and the weaver must stop with
 the file, the line and the name of what is missing; the checker of links must see a book that was spoiled afterwards.
@@ -33,6 +34,7 @@ import noweb  # noqa: E402
 import problems  # noqa: E402
 import references  # noqa: E402
 import report  # noqa: E402
+import tested  # noqa: E402
 import verdicts  # noqa: E402
 import weave  # noqa: E402
 from problems import Problem  # noqa: E402
@@ -334,6 +336,29 @@ class BrokenBook(Workshop):
         self.assertEqual(self.weave()[0], 0)
         self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
 
+    def test_tables_of_reference_are_what_the_program_says(self) -> None:
+        flags = [{"name": "--help"}, {"name": "--step", "placed": False, "text": "a step, 1e-6 to -2e3; with --far", "required": True,
+                                      "several": False, "value": "TEXT", "choices": ["near"]}]
+        grey = {"name": "grey", "parameters": [{"name": "albedo", "meaning": "its share", "unit": "%", "range": "0 to 1", "default": "0.5",
+                                                "optional": False}]}
+        self.put("report/program.json", json.dumps({"commands": [{"name": "walk", "flags": flags}], "models": [grey], "skies": []}))
+        self.put("report/schema.json", json.dumps({
+            "properties": {"eye": {"description": "what sees", "properties": {"pupil_mm": {"$ref": "#/definitions/size"}}}},
+            "definitions": {"size": {"description": "a size in mm"}}, "required": ["eye"]}))
+        tables = "\n\n\\options{walk}\n\n\\parameters{grey}\n\n\\keys{eye size}\n"
+        self.put("nw/surface/second.nw", SECOND + tables)
+        self.assertEqual(self.weave(), (0, ""))
+        page = re.sub(r"<[^>]*>|\s+", " ", self.get("surface-second.html"))
+        for words in ("--step TEXT", "a step,", "; with --far : near ; required", "albedo its share [%] 0 to 1 0.5", "eye what sees; required",
+                      "pupil_mm a size in mm", "size a size in mm"):
+            self.assertIn(words, re.sub(" +", " ", page))
+        self.assertNotIn("1e-6", page)
+        self.assertNotIn("--help", page)
+
+    def test_a_table_of_reference_that_the_program_does_not_have(self) -> None:
+        self.put("nw/surface/second.nw", SECOND + "\n\\options{walk}\n")
+        self.fails("nw/surface/second.nw:13:", "walk", "does not have")
+
     def test_missing_figure(self) -> None:
         os.remove(os.path.join(self.dir, "report/F3.9/fresnel.svg"))
         self.fails("nw/light/first.nw:19:", "F3.9/fresnel")
@@ -446,7 +471,7 @@ class Search(unittest.TestCase):
             chunks = noweb.read([path])[0].chunks
         page = book.Page(name, "", "")
         page.title, page.body, page.chunks = "Rough metal", self.BODY, chunks
-        script = finder.index([page], [], {chunks[0].label: ("page.html", "chunk-complain")})
+        script = finder.index([page], tested.Wording([]), [], {chunks[0].label: ("page.html", "chunk-complain")})
         found: dict[str, Any] = json.loads(script.removeprefix("const INDEX = ").removesuffix(";\n"))
         return found
 

@@ -9,7 +9,8 @@ const SPELLINGS = [[/ys(e|ed|es|er|ers|ing)$/, "yz$1"], [/is(e|ed|es|er|ers|ing|
   [/^spectra$/, "spectrum"], [/^axes$/, "axis"], [/ices$/, "ix"], [/^index$/, "indix"]];
 const ENDINGS = ["ations", "ation", "ances", "ance", "nesses", "ness", "ities", "ity", "ively", "ive", "ions", "ion", "ings", "ing", "able", "edly",
   "ed", "ers", "er", "ors", "or", "ally", "ly", "es", "s", "e"];
-const SHOWN = 40, AROUND = 110;
+const KINDS = ["", "message in ", "test in "];  // of sections: prose, messages of the program, tests
+const TEST = 2, SHOWN = 40, AROUND = 110;
 
 /** What words of one root have in common: roughness and rough, polarised and polarization. */
 function stem(word) {
@@ -48,14 +49,14 @@ function sectionsWith(term) {
   return found;
 }
 
-/** Sections that have all terms, the best first. A heading counts four times; messages of the program come after prose. */
+/** Sections that have all terms, the best first. A heading counts four times, but for a test's name; messages of the program and tests come after prose. */
 function search() {
   let all = null;
   for (const term of terms) {
     const found = sectionsWith(term);
     for (const [section, weight] of found) {
       const heading = (INDEX.sections[section][2].toLowerCase().match(/[\p{L}\p{N}_]+/gu) || []).map(stem);
-      if (heading.includes(roots.get(term))) found.set(section, 4 * weight);
+      if (INDEX.sections[section][3] !== TEST && heading.includes(roots.get(term))) found.set(section, 4 * weight);
     }
     if (all) for (const section of [...all.keys()]) {
       if (found.has(section)) all.set(section, all.get(section) + found.get(section));
@@ -64,7 +65,7 @@ function search() {
   }
   const phrase = given.join(" ");
   const plain = (text) => (text.toLowerCase().match(/[\p{L}\p{N}_]+/gu) || []).join(" ");
-  const rank = ([section, weight]) => weight + (given.length > 1 && plain(INDEX.texts[section]).includes(phrase) ? 20 : 0) - 6 * INDEX.sections[section][3];
+  const rank = ([section, weight]) => weight + (given.length > 1 && plain(INDEX.texts[section]).includes(phrase) ? 20 : 0) - (INDEX.sections[section][3] ? 6 : 0);
   const ranked = [...(all || [])].map((each) => [each[0], rank(each)]);
   return ranked.sort((a, b) => b[1] - a[1] || a[0] - b[0]).map(([section]) => section);
 }
@@ -109,9 +110,9 @@ if (terms.length) {
   identifiers.sort((a, b) => a[0].length - b[0].length);
   const sections = search(), list = document.getElementById("results");
   for (const section of sections.slice(0, SHOWN)) {
-    const [page, anchor, title, isMessage] = INDEX.sections[section];
+    const [page, anchor, title, kind] = INDEX.sections[section];
     const [file, chapter] = INDEX.pages[page];
-    item(file + (anchor ? "#" + anchor : ""), title, isMessage ? `message in ${chapter}` : title === chapter ? "" : chapter, list, snippet(section));
+    item(file + (anchor ? "#" + anchor : ""), title, title === chapter ? "" : KINDS[kind] + chapter, list, snippet(section));
   }
   for (const [word, anchor] of identifiers.slice(0, 12)) item("identifiers.html#" + anchor, word, "identifier", list);
   const more = sections.length > SHOWN ? `, the first ${SHOWN} of them here` : "";

@@ -13,7 +13,9 @@ import contents
 import latexml
 import names
 import noweb
+import reference
 import references
+import tested
 import verdicts
 from problems import Problem, Problems, stop_if_any
 
@@ -37,6 +39,7 @@ class Page:
         self.title = self.body = ""
         self.sections: list[tuple[str, str]] = []  # (anchor, title)
         self.chunks: list[noweb.Chunk] = []
+        self.tests: list[tested.Test] = []
         self.root: Any = None  # LaTeXML's XML
         self.tree: Any = None  # and its HTML
         self.tex = self.addresses = ""  # what that was made of, and what its references lead to
@@ -185,6 +188,9 @@ class Book:
         self.names = [name for name in public if os.path.normpath(name.path) in read]
         self.links = Links(options)
         self.verdicts = verdicts.Verdicts(options.report, options.inventory)
+        self.reference = reference.Reference(options.report)
+        self.tests = tested.Tests(options.tests)
+        self.wording = tested.Wording(part for chapter in self.chapters for part in chapter.parts if isinstance(part, str))
         self.parts: list[Part] = []
         self.front: list[Page] = []
         self.back: list[Page] = []
@@ -213,8 +219,16 @@ class Book:
             else:
                 (self.front if key.startswith("front/") else self.back).append(page)
             self.name_chunks(chapter, page)
+        homes = self.chapter_pages()
+        self.tests.attach(list(homes))
+        for name, page in homes.items():
+            page.tests = self.tests.of(name)
         for page in self.pages():
             page.latex = page.latex.replace(r"\readerspath", self.readers_path_latex())
+
+    def chapter_pages(self) -> dict[str, Page]:
+        """The pages of the parts, in reading order, by their chapters' names."""
+        return {os.path.basename(contents.key_of(page.source)): page for part in self.parts for page in part.pages}
 
     def readers_path(self) -> list[tuple[Page, str]]:
         """The chapters for a first reader, each with what it is read for."""
@@ -256,6 +270,7 @@ class Book:
         if re.search(r"^\\inventory$", page.latex, re.MULTILINE):
             self.links.inventory = page
         self.verdicts.substitute(page, self.chapters, self.pages())
+        self.reference.substitute(page)
         self.links.substitute(page)
 
     def pages(self) -> list[Page]:
@@ -269,6 +284,7 @@ def run(description: str, render: Callable[[argparse.Namespace], None]) -> None:
     for name in ("out", "work", "book", "report", "bibliography"):
         arguments.add_argument("--" + name, required=True)
     arguments.add_argument("--drawn", default="", help="the folder of the figures that the build draws of the chapters")
+    arguments.add_argument("--tests", default="tests", help="the folder of the tests that the chapters list and the site has (default: tests)")
     arguments.add_argument("--live", default="", help="the program of the live figures; without it they are left out")
     arguments.add_argument("--headers", help="the folder of the tangled headers, whose public names the index must hold")
     arguments.add_argument("--inventory", help="the list of all items, those that are not built as well")

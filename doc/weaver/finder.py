@@ -11,6 +11,7 @@ import lxml.html
 
 import listing
 import noweb
+import tested
 
 if TYPE_CHECKING:
     from book import Page
@@ -23,7 +24,7 @@ HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
 DIVISIONS = ("ltx_chapter", "ltx_section", "ltx_subsection")  # what is found; smaller ones belong to these
 APART = HEADINGS + ("p", "li", "dt", "dd", "td", "th", "pre")  # no word goes on from one to the next
 UNREAD_TAGS = ("math", "svg")
-UNREAD_CLASSES = ("chunk-foot", "chunk-number", "defines", "permalink", "ltx_tag", "source", "folded")
+UNREAD_CLASSES = ("chunk-foot", "chunk-number", "defines", "permalink", "ltx_tag", "source", "folded", "tests")
 WORD = re.compile(r"\w+")
 GREEK = re.compile(r"\\((?:alpha|beta|gamma|delta|epsilon|varepsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi|varphi"
                    r"|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega))(?![a-zA-Z])")
@@ -128,21 +129,37 @@ def messages_of(page: "Page", anchors: dict[str, tuple[str, str]]) -> Iterator[S
             yield section
 
 
-def index(pages: list["Page"], identifiers: Iterable[listing.Identifier], anchors: dict[str, tuple[str, str]]) -> str:
+def tests_of(page: "Page", wording: tested.Wording) -> Iterator[Section]:
+    """The page of a file of tests: a section for what its head says, and one for each test, with its comments and messages."""
+    file = page.tests[0].file
+    section = Section("", page.title)
+    section.pieces = [file.head]
+    yield section
+    for test in page.tests:
+        section = Section(test.full, wording.words(test))
+        section.pieces = [" \u2026 ".join([test.full, test.sentence, *(said for said in STRING.findall(file.text[test.begin:test.end])
+                                                                     if said.count(" ") > 1)])]
+        yield section
+
+
+def index(pages: list["Page"], wording: tested.Wording, identifiers: Iterable[listing.Identifier], anchors: dict[str, tuple[str, str]]) -> str:
     """A script that defines INDEX, as search.js expects it."""
     sections: list[tuple[int, str, str, int]] = []
     texts: list[str] = []
     words: dict[str, list[int]] = {}
     for number, page in enumerate(pages):
-        found = [(section, 0) for section in sections_of(page)] + [(section, 1) for section in messages_of(page, anchors)]
-        for section, is_message in found:
+        if page.tests and not page.latex:  # a file of tests
+            found = [(section, 2) for section in tests_of(page, wording)]
+        else:
+            found = [(section, 0) for section in sections_of(page)] + [(section, 1) for section in messages_of(page, anchors)]
+        for section, kind in found:
             every = set(WORD.findall((section.text + " " + section.title).lower()))
             if page.name == "notation":
                 every |= set(section.symbols)
             for word in every:
                 if len(word) > 1 and not word[0].isdigit() and word not in COMMON:
                     words.setdefault(word, []).append(len(sections))
-            sections.append((number, section.anchor, section.title, is_message))
+            sections.append((number, section.anchor, section.title, kind))
             texts.append(section.text)
     packed = {word: " ".join(base36(b - a) for a, b in zip([-1] + found, found)) for word, found in sorted(words.items())}
     data = {"pages": [(page.file, text_of(page.title)) for page in pages], "sections": sections, "words": packed, "texts": texts,

@@ -1,11 +1,13 @@
 """The chunks of a book as HTML and as LaTeX: coloured C++, links to what is used, and below each chunk where it leads."""
 import functools
+import keyword
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 import noweb
+import tested
 from names import Name
 from noweb import Chunk
 
@@ -18,6 +20,8 @@ inline int long mutable namespace new noexcept nullptr operator override private
 requires return short signed sizeof static static_assert static_cast struct switch template this throw true try typedef
 typeid typename union unsigned using virtual void volatile while""".split())
 
+PYTHON_KEYWORDS = frozenset(keyword.kwlist)
+
 TOKEN = re.compile(
     r"""(?P<use>\x01\d+\x02)
       | (?P<comment>//[^\n\x01]*|/\*.*?\*/)
@@ -27,6 +31,13 @@ TOKEN = re.compile(
       | (?P<word>[A-Za-z_]\w*)
       | (?P<other>\s+|.)""", re.VERBOSE | re.MULTILINE | re.DOTALL)
 
+PYTHON_TOKEN = re.compile(
+    r"""(?P<comment>\#[^\n]*)
+      | (?P<directive>^[ ]*@[\w.]+)
+      | (?P<string>[rbfRBF]{0,2}(?:\"{3}(?:\\.|[^\\])*?\"{3}|'{3}(?:\\.|[^\\])*?'{3}|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))
+      | (?P<number>\b\d[\w.]*)
+      | (?P<word>[A-Za-z_]\w*)
+      | (?P<other>\s+|.)""", re.VERBOSE | re.MULTILINE | re.DOTALL)
 
 ROOT = re.compile(r"\w+/\w+\.(?:plugin\.cpp|[ch]pp)$")  # the name of a chunk that is a file
 FRAME = re.compile(r"\s*(?:#.*|(?:inline )?namespace\b[^;]*\{|\}+(?:\s*//.*)?|\x01\d+\x02|//.*|using [^;(]*;|(?:class|struct) \w+;|)$")
@@ -106,6 +117,11 @@ class Listing:
         return sorted(set(labels), key=lambda label: self.by_label[label].number)
 
     def code(self, chunk: Chunk) -> str:
+        """The code of a chunk."""
+        return self.coloured(chunk.text, chunk.links, chunk.used_chunks)
+
+    def coloured(self, code: str, links: Mapping[str, str], used_chunks: Sequence[tuple[str, str]] = (), python: bool = False) -> str:
+        """Some code in colours; links leads from identifiers to the chunks that define them."""
         out: list[str] = []
         waiting: list[str] = []  # plain text waits for its neighbours, since it comes in many small pieces
 
@@ -115,13 +131,13 @@ class Listing:
                 waiting.clear()
             out.append(text)
 
-        for match in TOKEN.finditer(chunk.text):
+        for match in (PYTHON_TOKEN if python else TOKEN).finditer(code):
             kind, text = match.lastgroup or "", match[0]
             if kind == "use":
-                put(self.use(*chunk.used_chunks[int(text[1:-1])]))
-            elif kind == "word" and text in chunk.links:
-                put(self.identifier(text, chunk.links[text]))
-            elif kind == "word" and text in KEYWORDS:
+                put(self.use(*used_chunks[int(text[1:-1])]))
+            elif kind == "word" and text in links:
+                put(self.identifier(text, links[text]))
+            elif kind == "word" and text in (PYTHON_KEYWORDS if python else KEYWORDS):
                 put(self.colour("keyword", text))
             elif kind in ("word", "other"):
                 waiting.append(text)
@@ -266,6 +282,14 @@ class HtmlListing(Listing):
                 f'<pre><code>{self.code(chunk)}</code></pre>\n'
                 f'<p class="chunk-foot">{self.foot(chunk)}</p>\n</{box}>')
 
+    def links_from(self, text: str) -> dict[str, str]:
+        """Where a file of tests leads: the names with a capital that the chapters of its includes define."""
+        links: dict[str, str] = {}
+        for floor, name in re.findall(r'^#include "malus/(\w+)/(\w+)\.hpp"', text, re.MULTILINE):
+            for chunk in self.by_path.get(os.path.join("nw", floor, name + ".nw"), ()):
+                links |= {word: chunk.label for word, _ in chunk.defines if re.fullmatch(r"\w*[A-Z]\w*", word) and len(word) > 1}
+        return links
+
     def chunk_index(self) -> str:
         rows = [f'<tr><td>⟨{name_html(chunk.name)}⟩</td>'
                 f'<td>{self.numbers(piece.label for piece in chunk.pieces)}</td>'
@@ -280,6 +304,7 @@ class HtmlListing(Listing):
 
 
 TEX = {"number": "digits"}  # \\litnumber is the number of a chunk
+MOST_WORDS = 3000  # letters of a chapter's tests on paper, which fill half a page; with more, only their number is told
 MOST_NOTES = 4  # uses of a chunk that are named beside its name on paper
 
 
@@ -352,6 +377,16 @@ class TexListing(Listing):
         code = "\n".join(lines)
         head = rf"\litname{{{chunk.label}}}{{{chunk.number}}}{{{self.name(chunk.name)}}}{{{again}}}{{{self.notes(chunk)}}}"
         return rf"\litdefine{{{chunk.label}}}{{{head}%" "\n" rf"\litcodelines{{{widest}}}{{{code}}}}}" "\n"
+
+    def tests(self, tests: Sequence[tested.Test], wording: tested.Wording) -> str:
+        """The tests of a chapter: their files and numbers, and their names by kind, if they leave half of a page."""
+        def of(kind: str) -> str:
+            names = [wording.words(test) + (f" ({test.control})" if test.control else "") for test in tests if test.kind == kind]
+            head = rf"\emph{{{tested.PLURALS.get(kind, kind).capitalize()}:}} " if kind else ""
+            return head + self.prose("; ".join(names)) + "." if names else ""
+        files = " ".join(rf"{self.word(file.path)}, {tested.summary(own)}." for file, own in tested.by_file(tests))
+        names = " ".join(filter(None, map(of, dict.fromkeys(["", *tested.KINDS.values()]))))
+        return rf"\littests{{{files}}}{{{names if len(names) < MOST_WORDS else ''}}}"
 
     def identifier_index(self) -> str:
         """Where each identifier of both volumes is defined, by volume and page; those of the site alone are not listed."""

@@ -31,6 +31,7 @@ RUNS = 6  # LaTeX is run until its references stay as they are; more runs than t
 NEWLABEL = re.compile(r"^\\newlabel\{([^}]*)\}\{\{((?:[^{}]|\{[^{}]*\})*)\}\{([^}]*)\}\{.*\}\{([^{}]*)\}\{\}\}$", re.MULTILINE)
 MARK = "malus-source: "
 FIGURE = re.compile(r"\\litfigure\{([^}]*)\}")
+TESTED = re.compile(r"(?ms)^\\section\{How it is tested\}.*?(?=^\\section|\Z)")
 WRONG = re.compile(r"Overfull \\[hv]box \(([\d.]+)pt too|^LaTeX Warning: (?:Reference|Citation|Hyper reference) .*"
                    r"|^LaTeX Warning: Label .* multiply defined|^Missing character: .*|^! .*"
                    r"|^pdfTeX warning.*|^Package hyperref Warning: .*|^LaTeX Font Warning: .*undefined")
@@ -91,11 +92,11 @@ class PdfBook(book.Book):
         figures = self.figures()
         self.choose_chunks()
         self.homes = {label: page.volume for page in self.pages() for label in book.LABEL.findall(page.latex)}
+        listings = listing.TexListing(self.chapters, self.names, self.printed)
         for page in self.pages():
-            latex = FIGURE.sub(functools.partial(self.figure, page, figures), page.latex)
+            latex = FIGURE.sub(functools.partial(self.figure, page, figures), self.with_tests(page, listings))
             latex = self.without_far_links(latex.replace(r"\chapter*{", r"\addchap{", 1), page.volume)
             self.put(page.name + ".tex", rf"\typeout{{{MARK}{page.source}}}" + latex)
-        listings = listing.TexListing(self.chapters, self.names, self.printed)
         naturals = "".join(rf"\litnatural{{{name}}}{{{width:.1f}bp}}" "\n" for name, width in figures.values())
         for volume in self.volumes():
             listings.volume = volume
@@ -105,6 +106,15 @@ class PdfBook(book.Book):
             self.put(f"malus-{volume}.tex", self.frame(volume))
         self.put("identifiers.tex", listings.identifier_index())
         shutil.copyfile(os.path.join(self.options.book, "malus.sty"), os.path.join(self.work, "malus.sty"))
+
+    def with_tests(self, page: book.Page, listings: listing.TexListing) -> str:
+        """A page with its tests at the end of the section about them, or of the chapter; line for line."""
+        if not page.tests:
+            return page.latex
+        table = listings.tests(page.tests, self.wording)
+        section = TESTED.search(page.latex)
+        end = section.end() if section else len(page.latex)
+        return page.latex[:end].rstrip(" ") + table + page.latex[end:]
 
     def choose_chunks(self) -> None:
         """Paper leaves the frames of files to the site, and of a part of reference all but the interface."""

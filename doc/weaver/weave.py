@@ -10,7 +10,7 @@ converted again. Every problem is printed with its file and line, and leaves
 the old book as it was.
 
 noweb.py reads the chapters, listing.py renders their chunks, latexml.py
-converts their prose, references.py reads the bibliography, and this program
+converts their prose, references.py reads the bibliography, tested.py the tests, and this program
 joins them: it checks what the prose refers to, finishes the trees of the
 pages, fills in the templates of the theme, and copies the figures.
 """
@@ -34,6 +34,7 @@ import contents
 import finder
 import latexml
 import listing
+import tested
 from book import Page
 from problems import Problem
 
@@ -43,7 +44,8 @@ FONTS = ["/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-regular
          "/usr/share/texmf/fonts/opentype/public/tex-gyre/texgyrepagella-bolditalic.otf",
          "/usr/share/texmf/fonts/opentype/public/tex-gyre-math/texgyrepagella-math.otf"]
 
-INDEXES = {"chunks": "Chunks", "identifiers": "Identifiers"}
+INDEXES = {"chunks": "Chunks", "identifiers": "Identifiers", "tests": "Tests"}
+TESTED = "How it is tested"  # the section that ends with the table of the tests
 Element = Any  # lxml brings no types
 
 
@@ -107,6 +109,7 @@ class Finisher:
     def __init__(self, links: book.Links, listings: listing.HtmlListing) -> None:
         self.links, self.listings = links, listings
         self.rendered: dict[str, str] = {}  # label -> the chunk as HTML
+        self.test_pages: dict[str, str] = {}  # path of a file of tests -> its page
         self.holes: list[str] = []  # what is HTML already, chunks and drawings; put in when the tree becomes text
 
     def render_chunks(self, page: Page) -> None:
@@ -138,6 +141,8 @@ class Finisher:
         for figure in page.tree.xpath('.//span[@class="ltx_text lit-figure"]'):
             self.figure(page, figure)
         self.link_items(page)
+        for code in page.tree.xpath('.//span[contains(@class, "ltx_font_typewriter") or contains(@class, "lit-code")]'):
+            self.test_file(code)
         page.title = page.title or page.name
 
     def hole(self, html: str) -> Element:
@@ -315,6 +320,20 @@ class Finisher:
         alone = around.get("class") == "ltx_para" and len(around) == 1
         replace(around if alone else place, self.hole(figure if self.links.options.live else ""))
 
+    # ------------------------------------------------------------ tests
+    def test_file(self, code: Element) -> None:
+        """A file of tests that is named in the prose leads to its page."""
+        page = self.test_pages.get(code.text_content())
+        if page and not code.xpath("ancestor::a"):
+            wrap(code, E.a({"href": page}))
+
+    def put_tests(self, page: Page, table: str) -> None:
+        """The table of a chapter's tests, at the end of the section about them or of the chapter."""
+        chapter = page.tree.xpath('.//section[starts-with(@class, "ltx_chapter")]')[0]
+        sections = [section for section in chapter.xpath('.//section[starts-with(@class, "ltx_section")]')
+                    if TESTED in section[0].text_content()]
+        (sections[-1] if sections else chapter).append(self.hole(table))
+
     # ------------------------------------------------------------ links
     def address_of(self, page: Page, label: str) -> str:
         """Where a label is, seen from a page."""
@@ -378,6 +397,7 @@ class HtmlBook(book.Book):
     def __init__(self, options: argparse.Namespace) -> None:
         super().__init__(options)
         self.listings = listing.HtmlListing(self.chapters, self.names)
+        self.test_pages: list[Page] = []
         self.titles: dict[str, tuple[str, str]] = {}  # label of a chapter or section -> (which of these, title)
         # the titles and bodies that the templates of the theme show are HTML already
         self.templates = jinja2.Environment(loader=jinja2.FileSystemLoader(options.book), autoescape=False,
@@ -398,6 +418,7 @@ class HtmlBook(book.Book):
         converter = latexml.Converter(self.options.work, self.options.book)
 
         finisher = Finisher(self.links, self.listings)
+        finisher.test_pages = {file.path: file.page for file in self.tests.files}
         for page in converter.to_xml(pages):
             for label, (anchor, number, kind, title) in latexml.give_addresses(page.root).items():
                 self.links.labels[label] = (page, anchor, number)
@@ -408,6 +429,9 @@ class HtmlBook(book.Book):
             page.addresses = latexml.resolve(page.root, functools.partial(self.to_label, page), self.to_entry)
         for page in converter.to_html(pages):
             finisher.finish(page)
+            if page.tests:
+                finisher.put_tests(page, self.render("tests.html", count=len(page.tests), summary=tested.summary(page.tests),
+                                                     groups=list(tested.by_file(page.tests)), words=self.wording.words))
         self.number_entries(self.back[-1])
         for page in pages:
             page.body = finisher.text(page)
@@ -415,6 +439,26 @@ class HtmlBook(book.Book):
             part.page.title = part.title
             part.page.body = self.render("part.html", part=part, sentences={page: self.sentence(page) for page in part.pages})
         self.add_indexes(finisher)
+        self.test_pages = [self.test_page(finisher, file) for file in self.tests.files]
+
+    def test_page(self, finisher: Finisher, file: tested.TestFile) -> Page:
+        """The source of a file of tests, with a place for each test."""
+        page = Page(file.name, file.path, "")
+        page.title, page.tests = file.path, file.tests
+        pages = self.chapter_pages()
+        links = self.listings.links_from(file.text)
+        pieces, last = [], 0
+        for test in file.tests:
+            pieces += [self.listings.coloured(file.text[last:test.begin], links, python=file.is_python),
+                       f'<span class="test" id="{escape(test.full)}">',
+                       self.listings.coloured(file.text[test.begin:test.end], links, python=file.is_python), "</span>"]
+            last = test.end
+        pieces.append(self.listings.coloured(file.text[last:], links, python=file.is_python))
+        numbers = "\n".join(map(str, range(1, file.text.count("\n") + 1)))
+        body = self.render("testfile.html", file=file, summary=tested.summary(file.tests), numbers=numbers, code="".join(pieces),
+                           homes=[pages[name] for name in self.tests.homes[file.path]])
+        page.body = finisher.resolve(page, body)
+        return page
 
     def sentence(self, page: Page) -> str:
         """A paragraph that says what a chapter is about."""
@@ -449,13 +493,26 @@ class HtmlBook(book.Book):
             set_text_before(cited, text_before(cited) + " ")
 
     def add_indexes(self, finisher: Finisher) -> None:
-        """The two indexes, before the bibliography."""
-        tables = (self.listings.chunk_index(), self.listings.identifier_index())
+        """The indexes, before the bibliography."""
+        tables = (self.listings.chunk_index(), self.listings.identifier_index(), self.test_index())
         for (name, title), table in zip(INDEXES.items(), tables):
+            if name == "tests" and not self.tests.files:
+                continue
             page = Page(name, "", "")
             page.title = title
             page.body = finisher.resolve(page, f"<h1>{title}</h1>\n{table}")
             self.back.insert(-1, page)
+
+    def test_index(self) -> str:
+        """All files of tests with their chapters."""
+        pages = self.chapter_pages()
+
+        def row(file: tested.TestFile) -> str:
+            homes = ", ".join(f'<a href="{page.file}#tests-of-the-chapter">{page.title}</a>'
+                              for page in (pages[name] for name in self.tests.homes[file.path]))
+            number = tested.summary(file.tests).split(":", maxsplit=1)[0]
+            return f'<tr><td><a href="{file.page}">{escape(file.path)}</a></td><td>{number}</td><td>{homes}</td></tr>'
+        return listing.table(("File", "tests", "chapters"), map(row, self.tests.files))
 
     def reading_order(self) -> list[Page]:
         """All pages as a reader turns them: a part begins with its own page."""
@@ -475,6 +532,8 @@ class HtmlBook(book.Book):
         if page.name != "index":
             title += f" - {self.about['title']}"
         above = next((part.page for part in self.parts if page in part.pages), None)
+        if page in self.test_pages:
+            above = self.chapter_pages()[self.tests.homes[page.source][0]]
         return self.render("page.html", page=page, before=before, after=after, above=above, title=title) + "\n"
 
     def title_page(self) -> Page:
@@ -503,9 +562,10 @@ class HtmlBook(book.Book):
         for page, before, after in zip(pages, [None, *pages], [*pages[1:], None]):
             out.put(page.file, self.layout(page, before, after))
         search = self.search_page()
-        out.put(search.file, self.layout(search, None, None))
+        for page in [search, *self.test_pages]:
+            out.put(page.file, self.layout(page, None, None))
         searched = [page for page in self.pages() if page.name not in INDEXES]
-        out.put("search-index.js", finder.index(searched, self.listings.identifiers, self.links.anchors))
+        out.put("search-index.js", finder.index(searched + self.test_pages, self.wording, self.listings.identifiers, self.links.anchors))
         for name in ("search.js", "book.css"):
             out.copy(name, os.path.join(self.options.book, name))
         if self.options.live:

@@ -1,4 +1,4 @@
-"""The sun and the air from Python against the program, to the last bit."""
+"""The sun and the air from Python against the program, to the last bit (nw/python/PyAir.nw)."""
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,5 @@
-"""netCDF of malus render, read by netCDF4 and xarray, against the ENVI cube and against malus.render, bit by bit."""
+"""netCDF of malus render, read by netCDF4 and xarray, against the ENVI cube and against malus.render, bit by bit
+(nw/files/NetCDF.nw, nw/python/PyScene.nw)."""
 import json
 from pathlib import Path
 from typing import Any

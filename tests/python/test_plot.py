@@ -1,4 +1,4 @@
-"""Pictures of datasets, and the examples."""
+"""Pictures of datasets, and the examples (nw/python/PyModule.nw)."""
 import doctest
 import os
 import subprocess

@@ -1,4 +1,5 @@
-"""Calls that malus cannot do: each is a ValueError with one line, which names the argument."""
+"""Calls that malus cannot do: each is a ValueError with one line, which names the argument
+(nw/python/PyArrays.nw, nw/python/PyModule.nw)."""
 import copy
 from typing import Any
 

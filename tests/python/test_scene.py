@@ -1,4 +1,4 @@
-"""Pictures from Python against the cubes of malus render, bit by bit."""
+"""Pictures from Python against the cubes of malus render, bit by bit (nw/python/PyScene.nw)."""
 import _thread
 import copy
 import json

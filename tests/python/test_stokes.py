@@ -1,4 +1,4 @@
-"""Stokes vectors and Mueller matrices in arrays."""
+"""Stokes vectors and Mueller matrices in arrays (nw/python/PyLight.nw)."""
 from typing import Any
 
 import numpy as np

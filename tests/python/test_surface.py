@@ -1,4 +1,4 @@
-"""Surfaces from Python against malus brdf, to the last bit."""
+"""Surfaces from Python against malus brdf, to the last bit (nw/python/PySurface.nw, nw/python/PyArrays.nw)."""
 import threading
 import time
 from pathlib import Path

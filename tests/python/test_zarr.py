@@ -1,4 +1,4 @@
-"""Datasets of malus as Zarr: written by xarray, read back with the same numbers, coordinates and attributes."""
+"""Datasets of malus as Zarr: written by xarray, read back with the same numbers, coordinates and attributes (nw/python/PyScene.nw)."""
 import json
 from pathlib import Path
 from typing import Any
