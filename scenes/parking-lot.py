@@ -240,7 +240,7 @@ def lawn(rng: random.Random) -> Mesh:
 
 
 def tree(rng: random.Random) -> Mesh:
-    """7 m high, standing on z = 0."""
+    """7 m high, on z = 0."""
     mesh = Mesh('a tree: trunk and leaves')
     mesh.facet('trunk', 'bark')
     rings = [[mesh.vertex(r * math.cos(TAU * i / 16), r * math.sin(TAU * i / 16), z) for i in range(16)]

@@ -1,5 +1,5 @@
-// The rough metal (nw/surface/BRDFTorranceSparrow.nw) against field vectors, std::complex and
-// 4x4 algebra.
+// The rough metal (nw/surface/BRDFTorranceSparrow.nw, FacetIntegral.nw) against field
+// vectors, std::complex and 4x4 algebra.
 #include "malus/surface/BRDFTorranceSparrow.hpp"
 
 #include <gtest/gtest.h>

@@ -42,7 +42,7 @@ TEST(ClaimTableIdentity, ASoundTableIsRead) {
 TEST(ClaimTableIdentity, NegativeControlFaultyRowsAreRefused) {
   EXPECT_TRUE(refuses("T1,a,thesis,sentence,reproduced,,,,it falls,error,\n", "is empty"));
   EXPECT_TRUE(refuses("T1,a,thesis,sentence,reproduced,,,,,error,falls\n", "is empty"));
-  EXPECT_TRUE(refuses(first + first, "T1/a: stands twice"));
+  EXPECT_TRUE(refuses(first + first, "T1/a: occurs twice"));
   EXPECT_TRUE(refuses("T1,a,theses,sentence,,,,,it falls,,falls\n", "not one of the words"));
   EXPECT_TRUE(refuses("T1,a,thesis,hunch,,,,,it falls,,falls\n", "not one of the words"));
   EXPECT_TRUE(

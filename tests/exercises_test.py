@@ -28,7 +28,7 @@ def last_row(text: str) -> dict[str, str]:
 
 
 def facets(parameters: list[str], *flags: str) -> dict[str, float]:
-    """What `malus brdf` prints for the model of Torrance and Sparrow."""
+    """The output of `malus brdf` for the model of Torrance and Sparrow."""
     settings = [flag for parameter in parameters for flag in ("--param", parameter)]
     row = last_row(run("brdf", "--model", "torrance-sparrow", *settings, *flags, "--format", "csv"))
     return {name: float(value) for name, value in row.items()}

@@ -71,7 +71,7 @@ def shown(document: str) -> list[tuple[str, list[str]]]:
 
 
 def printed(command: str) -> list[str]:
-    """What a command of the guide prints, with this program for ./build/malus and without lines that tell of time."""
+    """The output of a command of the guide, with this program for ./build/malus and without lines that contain times."""
     with tempfile.TemporaryDirectory() as folder:
         line = command.replace("./build/malus", shlex.quote(os.path.abspath(MALUS)))
         line = line.replace(" scenes/", f" {TOP / 'scenes'}/")

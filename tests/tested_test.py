@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The weaver's tests of the tests that it shows: beside the chapters, on pages of their own, and on paper.
+"""The weaver's tests of the tests that it shows: beside the chapters, on separate pages, and on paper.
 
 Identity: what must be on the pages of a book of two chapters, and that every test of the program is in a table. Negative
 controls: a file of tests without a chapter, a chapter that does not exist, a link to a place that is missing.

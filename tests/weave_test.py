@@ -334,7 +334,7 @@ class BrokenBook(Workshop):
         self.assertNotIn("3.2e-05", self.get("light-first.html"))
         self.put("report/values.tex", "\\malusval{F3.9.brewster}{3.2e-05b}\n")
         self.assertEqual(self.weave()[0], 0)
-        self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is no number")
+        self.assertIn("3.2e-05b", self.get("light-first.html"), "the control: a text that is not a number")
 
     def test_tables_of_reference_are_what_the_program_says(self) -> None:
         flags = [{"name": "--help"}, {"name": "--step", "placed": False, "text": "a step, 1e-6 to -2e3; with --far", "required": True,

@@ -304,7 +304,7 @@ class HtmlListing(Listing):
 
 
 TEX = {"number": "digits"}  # \\litnumber is the number of a chunk
-MOST_WORDS = 3000  # letters of a chapter's tests on paper, which fill half a page; with more, only their number is told
+MOST_WORDS = 3000  # letters of a chapter's tests on paper, which fill half a page; with more, only their number is printed
 MOST_NOTES = 4  # uses of a chunk that are named beside its name on paper
 
 

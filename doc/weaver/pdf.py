@@ -272,7 +272,8 @@ class PdfBook(book.Book):
                 pages = self.pages_of(volume.number)
                 print(f"volume {volume.number}: {pages} pages" + (f" of at most {volume.most_pages}" if volume.most_pages else ""))
                 if 0 < volume.most_pages < pages:
-                    raise Problem(self.contents.path, 0, f"volume {volume.number} has {pages} pages, but at most {volume.most_pages} are allowed")
+                    raise Problem(self.contents.path, 0, f"volume {volume.number} has {pages} pages, but at most "
+                                  f"{volume.most_pages} are allowed")
 
     def complain(self, errors_only: bool = False) -> None:
         """The problems in LuaLaTeX's log, with the chapter and the line."""

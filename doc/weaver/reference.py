@@ -46,7 +46,7 @@ def prose(words: str) -> str:
 
 
 class Reference:
-    """What the program says of itself, for the pages that have a table of it."""
+    """The program's description of itself, for the pages that have a table of it."""
 
     def __init__(self, report: str) -> None:
         self.commands: dict[str, Any] = {}
@@ -106,7 +106,8 @@ class Reference:
         return begin("key", ("value", .66)) + " ".join(rows) + END
 
     def below(self, name: str, value: dict[str, Any], required: bool, depth: int, rows: list[str]) -> None:
-        """A row for a key, and indented those of the keys inside of it. What has a definition is not opened: it has a table of its name."""
+        """A row for a key, and indented those of the keys inside of it. A key with a definition is not opened: it has a
+        table with its name."""
         indent = r"\quad " * depth
         rows.append(rf"{indent}{code(name)} & {prose(self.described_as(value))}{'; required' if required else ''} \\")
         for inner in (value, value.get("items"), value.get("additionalProperties")):

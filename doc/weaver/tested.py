@@ -1,8 +1,8 @@
 """The tests beside the code: which test files there are, what each test is, and to which chapters it belongs.
 
-A file of tests names its chapters in the comment at its head, as nw/floor/Name.nw or Name.nw, and belongs to the chapter of
-its own name besides. A test that is called after a chapter, by its suite (CubeView: CubeViewIdentity) or by its first words,
-is listed in that chapter; others in the chapter of the file's name. A chapter that the head names, and after which no test
+A file of tests names its chapters in the comment at its head, as nw/floor/Name.nw or Name.nw, and belongs to the
+chapter of its name as well. A test that is called after a chapter, by its suite (CubeView: CubeViewIdentity) or by its
+first words, is listed in that chapter; others in the chapter of the file's name. A chapter that the head names, and after which no test
 is called, has all. The end of a suite's name is the kind of its tests. A file without a chapter stops the book.
 """
 import ast
@@ -38,7 +38,7 @@ class Test:
         self.subject, self.kind = (parts[1], KINDS[parts[2]]) if parts else (suite, "")
         self.chapter = ""  # after which it is called
         self.sentence = first_sentence(above)
-        self.control = ""  # what the table says besides the kind
+        self.control = ""  # the text of the table after the kind
         if name.startswith(("NegativeControl", "test_negative_control")) or self.kind == "control":
             self.kind, self.control = self.kind.replace("control", ""), "negative control"
         elif CONTROL.search(above) or CONTROL.search(file.text[begin:end]):
@@ -64,7 +64,7 @@ class TestFile:
         (self.read_python if self.is_python else self.read_cpp)()
 
     def read_cpp(self) -> None:
-        """A test ends with the first brace that closes a line of its own."""
+        """A test ends with the first brace that is alone on its line."""
         head = re.match(r"(?://.*\n)+", self.text)
         self.head = uncommented(head[0]) if head else ""
         for match in BEGINS.finditer(self.text):
@@ -189,7 +189,7 @@ class Tests:
         self.files = [file for file in self.files if file.path in self.homes]
 
     def of(self, chapter: str) -> list[Test]:
-        """The tests of a chapter: those of its own file first."""
+        """The tests of a chapter: those of its file first."""
         files = sorted(self.files, key=lambda file: file.subject != chapter)
         return [test for file in files for test in file.of(chapter)]
 
