@@ -13,13 +13,12 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from problems import Problem
-from verdicts import END, ROUGH, plain
+from verdicts import END, ROUGH, plain, with_powers
 
 if TYPE_CHECKING:
     from book import Page
 
 MACRO = re.compile(r"^\\(options|keys|parameters)\{([^}]*)\}$", re.MULTILINE)
-POWER = re.compile(r"(?<![\w.])(-?)(\d+(?:\.\d+)?)e\+?(-?)0*(\d+)\b")
 OPTION = re.compile(r"(?<![\w-])--[a-z]+(-[a-z]+)*")
 FEW = 6  # choices that fit into a cell; more of them are what --list prints
 
@@ -38,11 +37,7 @@ def code(words: str) -> str:
 
 def prose(words: str) -> str:
     """Words of the program as LaTeX: its options in type of the keyboard, its numbers with powers of ten as print has them."""
-    def power(found: re.Match[str]) -> str:
-        factor = "" if found[2] == "1" else found[2] + r"\cdot"
-        return f"${found[1]}{factor}10^{{{found[3]}{found[4]}}}$"
-
-    return OPTION.sub(r"\\texttt{\g<0>}", POWER.sub(power, plain(words)))
+    return OPTION.sub(r"\\texttt{\g<0>}", with_powers(plain(words)))
 
 
 class Reference:

@@ -31,10 +31,20 @@ BEGIN_ERRATA = (r"{\litsmall\begin{longtable}{" + "".join(f"{ROUGH}{{{width}\\te
                 + r"}\toprule place & as printed & as derived & evidence & effect \\ \midrule\endhead")
 BEGIN_ITEMS = (r"{\litsmall\begin{longtable}{l" + rf"{ROUGH}{{.28\textwidth}}{ROUGH}{{.15\textwidth}}rrrr{ROUGH}{{.19\textwidth}}"
                + r"}\toprule item & what & place & r & e & d & n & described in \\ \midrule\endhead")
+POWER = re.compile(r"(?<![\w.])(-?)(\d+(?:\.\d+)?)e\+?(-?)0*(\d+)\b")
 CLAIMS = re.compile(r"^\\claims\{([^}]*)\}$", re.MULTILINE)
 BEGIN_CLAIMS = (r"{\litsmall\begin{longtable}{l" + "".join(f"{ROUGH}{{{width}\\textwidth}}" for width in (.36, .3, .14))
                 + r"}\toprule item & sentence & criterion & verdict \\ \midrule\endhead")
 END = r"\bottomrule\end{longtable}}"
+
+
+def with_powers(latex: str) -> str:
+    """The same text, its numbers with powers of ten as print has them."""
+    def power(found: re.Match[str]) -> str:
+        factor = "" if found[2] == "1" else found[2] + r"\cdot"
+        return f"${found[1]}{factor}10^{{{found[3]}{found[4]}}}$"
+
+    return POWER.sub(power, latex)
 
 
 def plain(words: str) -> str:
@@ -94,7 +104,7 @@ class Verdicts:
                     continue
                 sentence = f"{claim['sentence']}: {claim['quantity']}" if claim["quantity"] else claim["sentence"]
                 fitted = f"; fitted, {claim['unknowns']} unknowns" if claim["fit"] else ""
-                rows.append(rf"\litto{{{name}}}{{{name}}} & {plain(sentence)} & {plain(claim['criterion'])}"
+                rows.append(rf"\litto{{{name}}}{{{name}}} & {with_powers(plain(sentence))} & {with_powers(plain(claim['criterion']))}"
                             rf" ({claim['source']}{fitted}) & {claim['verdict']} \\")
         return BEGIN_CLAIMS + " ".join(rows) + END
 
