@@ -236,7 +236,7 @@ const std::vector<BadScene> bad_scenes{
      "sensor.widht: is not a known key here; did you mean width?"},
     {R"({"radiometry": {"sampling": "gird"}})",
      "radiometry.sampling = \"gird\": is not allowed here; did you mean grid?"},
-    {R"({"platform": null})", "lacks \"platform\"; give where the sensor stands"},
+    {R"({"platform": null})", "lacks \"platform\"; give the position of the sensor"},
     {R"({"geometry": [{"obj": "missing.obj"}]})",
      "geometry[0].obj = \"missing.obj\": does not exist; give the name of a file; relative "
      "paths begin "
