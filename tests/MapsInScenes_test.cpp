@@ -164,8 +164,8 @@ TEST(MapsInScenesIdentity, WhatIsWrongIsNamedWithItsRemedy) {
   expect("/maps/rock", scene["maps"]["land"], "is also the name of a material; give the map");
   expect("/maps/land/materials/90", "land", "refers back to itself");
   expectIn(
-      "land.pgm: column 1, row 1 has the index 90, which names no material; name the material "
-      "of each index",
+      "land.pgm: column 1, row 1 has the index 90, which names no material; give the material "
+      "of each index that the image contains",
       place.without(scene, "/maps/land/materials/90"));
   expect("/materials/rock", {{"model", "pane"}, {"n", 1.5}},
          "selects \"rock\", which is clear; give clear materials their own surfaces");
