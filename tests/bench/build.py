@@ -65,10 +65,17 @@ def whole(name: str, rows: list[Row]) -> Row:
     return told((name, sum(cpu for _, cpu, _ in rows), sum(clock for _, _, clock in rows)))
 
 
+def has_code(path: str) -> bool:
+    """Whether a chapter has a file of its name with code, beside its header."""
+    floor, name = os.path.basename(os.path.dirname(path)), os.path.basename(path)[:-3]
+    with open(path, encoding="utf-8") as file:
+        return f"<<{floor}/{name}.cpp>>=" in file.read()
+
+
 def chapters(tree: str) -> list[str]:
     """The chapters that are edited: of those with their own test, one in so many."""
     tested = [path for path in sorted(glob.glob(os.path.join(tree, "nw", "*", "*.nw")))
-              if os.path.exists(os.path.join(tree, "tests", os.path.basename(path)[:-3] + "_test.cpp"))]
+              if os.path.exists(os.path.join(tree, "tests", os.path.basename(path)[:-3] + "_test.cpp")) and has_code(path)]
     return [tested[len(tested) * (2 * k + 1) // (2 * EDITS)] for k in range(EDITS)]
 
 
