@@ -205,7 +205,7 @@ TEST(NoticesIdentity, SettingsOfAGridBelongToAGrid) {
            said({{"sampling", "adaptive"}, {"deviation", 1}}));
   expectIn(
       "radiometry.max_zenith_deg = 80: has no effect with this sampling; leave it out, or "
-      "choose another sampling",
+      "name another sampling",
       said({{"max_zenith_deg", 80}}));
   expectIn(
       "radiometry.rays[1] = 4: leaves 3 directions beside the one to the sun, too few for 6 "

@@ -213,8 +213,8 @@ TEST(RadtranOpticsRefusals, BrokenFiles) {
             "give the functions from 0 to "
             "180 degrees, each angle once");
   EXPECT_EQ(changed([](Made& m) { m.ntheta[0] = -1; }).substr(0, 30),
-            "dust.cdf: ntheta = -1: is no n");
-  EXPECT_EQ(changed([](Made& m) { m.theta[3] = 190; }).substr(0, 38),
+            "dust.cdf: ntheta = -1: is not ");
+  EXPECT_EQ(changed([](Made& m) { m.theta[3] = 190; }).substr(0, 42),
             "dust.cdf: theta = 190: is not an angle (wa");
   EXPECT_EQ(changed([](Made& m) { m.theta[3] = m.theta[4]; }).substr(0, 39),
             "dust.cdf: theta = 178: comes twice (wav");
@@ -280,7 +280,7 @@ TEST(RadtranOpticsRefusals, FilesThatLie) {
     ParticleFile("validation/printed/iprt-waso.csv").at(350, 2);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("2 um: is no choice"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("2 um: selects nothing"), std::string::npos)
         << error.what();
   }
 }

@@ -273,7 +273,7 @@ TEST(RanksInvariant, MistakesEndAllRanks) {
   flags.part = "1/3";
   const Ended part = renderBy(2, flags);
   EXPECT_EQ(part.codes, std::vector<int>(2, 2));
-  EXPECT_NE(part.complaint.find("--part = 1/3: is for processes that do not talk"),
+  EXPECT_NE(part.complaint.find("--part = 1/3: is for independent processes"),
             std::string::npos)
       << part.complaint;
   EXPECT_EQ(filesBelow(scratch / "out"), 0u);

@@ -347,7 +347,7 @@ TEST(SkyPrintoutsInvariant, HalfACircleOfPrintouts) {
 TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
   has(changed("# unit: mW m^-2 sr^-1 nm^-1\n", ""),
       "sky.out: unit: is missing; begin the file with a line such as");
-  has(changed("mW m^-2", "kW m^-2"), "sky.out: unit = kW m^-2 sr^-1 nm^-1: is no unit of");
+  has(changed("mW m^-2", "kW m^-2"), "sky.out: unit = kW m^-2 sr^-1 nm^-1: is not a unit of");
   has(changed("# convention: iprt\n", ""), "sky.out: convention: is missing; declare");
   has(changed("iprt", "malus"), "has compass azimuths, and phi is not one");
   has(changed("   550.000", "   500.000"), "does not follow the wavelength before it");
@@ -379,7 +379,7 @@ TEST(SkyPrintoutsRefusal, UvspecByItsLine) {
 TEST(SkyPrintoutsRefusal, UvspecWithoutASky) {
   const std::string unit = "# unit: mW m^-2 sr^-1 nm^-1\n";
   has(complaint([&] { skyOf(unit + "450.0 1 2 3 4 5 6\n500.0 1 2 3 4 5 6\n"); }),
-      ":3: phi = 500: is no azimuth");
+      ":3: phi = 500: is not an azimuth");
   has(complaint([&] { skyOf(unit + "450.0 1 2 3 4 5 6\n-1.0 5.0\n-0.5 6.0\n"); }),
       ":3: phi: is missing: there are means over the azimuths only");
   has(complaint([&] { skyOf(unit + "450.0 1 2 3 4 5 6\n"); }), "the file ends within a block");
@@ -435,7 +435,7 @@ TEST(SkyPrintoutsRefusal, Listings) {
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
   has(gone.refused(),
-      "sky.csv:9: printout = special.txt: does not exist; give the name of a file");
+      "sky.csv:9: printout = special.txt: does not exist; name a file");
   const Listing twice(modtran5, modtran5);
   put(twice / "sky.csv", contents(twice / "sky.csv") + "80,30,common.txt\n");
   has(twice.refused(), "sky.csv:18: zenith_deg = 80: repeats the direction");
@@ -452,7 +452,7 @@ TEST(SkyPrintoutsRefusal, Mystic) {
   has(special("450 0 0 0 1\n550 0 0 0 1\n550 0 0 0 1\n"),
       "special.txt:3: radiance = 550 nm: has 2");
   has(special("450 0 0 0 1\n550 1 0 0 1\n"),
-      "special.txt:2: radiance = pixel 1 0 0: is another");
+      "special.txt:2: radiance = pixel 1 0 0: differs from the first");
   has(special("450 0 0 0 1\n440 0 0 0 1\n"),
       "special.txt:2: radiance = 440 nm: is out of order");
   has(special("450 0 0 0\n"), "special.txt:1: radiance = 450 0 0 0: holds 4 numbers");
