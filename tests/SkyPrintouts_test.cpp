@@ -434,8 +434,7 @@ TEST(SkyPrintoutsRefusal, Listings) {
   has(empty.refused(), "sky.csv: printout: names no printout; give a row");
   const Listing gone(modtran5, modtran5);
   std::filesystem::remove(gone / "special.txt");
-  has(gone.refused(),
-      "sky.csv:9: printout = special.txt: does not exist; name a file");
+  has(gone.refused(), "sky.csv:9: printout = special.txt: does not exist; name a file");
   const Listing twice(modtran5, modtran5);
   put(twice / "sky.csv", contents(twice / "sky.csv") + "80,30,common.txt\n");
   has(twice.refused(), "sky.csv:18: zenith_deg = 80: repeats the direction");
