@@ -304,7 +304,7 @@ class HtmlListing(Listing):
 
 
 TEX = {"number": "digits"}  # \\litnumber is the number of a chunk
-MOST_WORDS = 3000  # letters of a chapter's tests on paper, which fill half a page; with more, only their number is printed
+MOST_WORDS = 600  # letters of a chapter's tests on paper, a few lines; with more, only their number is printed
 MOST_NOTES = 4  # uses of a chunk that are named beside its name on paper
 
 
@@ -379,7 +379,7 @@ class TexListing(Listing):
         return rf"\litdefine{{{chunk.label}}}{{{head}%" "\n" rf"\litcodelines{{{widest}}}{{{code}}}}}" "\n"
 
     def tests(self, tests: Sequence[tested.Test], wording: tested.Wording) -> str:
-        """The tests of a chapter: their files and numbers, and their names by kind, if they leave half of a page."""
+        """The tests of a chapter: their files and numbers, and their names by kind, if these fill no more than a few lines."""
         def of(kind: str) -> str:
             names = [wording.words(test) + (f" ({test.control})" if test.control else "") for test in tests if test.kind == kind]
             head = rf"\emph{{{tested.PLURALS.get(kind, kind).capitalize()}:}} " if kind else ""
